@@ -1,0 +1,45 @@
+// A colour for every (u, v): a checkerboard by formula, or a pyramid of images.
+#pragma once
+
+#include "runtime/buffers/image.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace frustum {
+
+enum class Wrap : std::uint8_t { repeat, clamp, mirror };
+constexpr auto choices(Wrap) {
+  return std::array{std::pair{Wrap::repeat, "repeat"}, std::pair{Wrap::clamp, "clamp"}, std::pair{Wrap::mirror, "mirror"}};
+}
+
+// Squares of side 1/scale in u and v; `even` where floor(scale u) + floor(scale v) is even.
+struct Checker {
+  double scale = 8;
+  glm::dvec3 even{1}, odd{0};
+};
+
+// Level 0 is the image; each further level halves both sides (rounding down, at least 1) by exact area averages.
+// Texel rows are RGBA f32, linear light, premultiplied; row 0 is v = 1 (the top of the picture).
+struct MipPyramid {
+  struct Level {
+    int width = 0, height = 0;
+    std::vector<float> rgba;  // height x width x 4
+  };
+  std::vector<Level> levels;
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+};
+
+struct Texture {
+  std::variant<Checker, MipPyramid> source;
+};
+
+template <>
+const BufferType& buffer_type<Texture>();
+
+}  // namespace frustum

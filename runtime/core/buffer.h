@@ -1,0 +1,88 @@
+// What flows between nodes: an immutable value of some kind, erased once an edge and never once an element.
+#pragma once
+
+#include "runtime/core/diagnostic.h"
+#include "runtime/core/digest.h"
+#include "runtime/core/raster.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace frustum {
+
+class Buffer;
+class ParamReader;
+
+// Counts of what should not be there, and where the first of it is ("column position, vertex 17"; "plane Z, pixel 3,4").
+struct Health {
+  std::uint64_t values = 0, nan = 0, positive_infinity = 0, negative_infinity = 0;
+  std::string first = {};
+  bool finite() const { return nan + positive_infinity + negative_infinity == 0; }
+  void add(const Health& more) {
+    if (finite()) first = more.first;
+    values += more.values, nan += more.nan;
+    positive_infinity += more.positive_infinity, negative_infinity += more.negative_infinity;
+  }
+};
+
+// One kind of buffer: what the runtime can do with it without knowing what it is.
+struct BufferType {
+  std::string_view name = {};   // "mesh"
+  std::string_view doc = {};    // one sentence
+  std::string_view color = {};  // of its ports in the studio, "#rrggbb"
+
+  std::size_t (*bytes)(const void*) = nullptr;
+  void (*hash)(const void*, Hasher&) = nullptr;              // of the content, nothing of addresses
+  Health (*health)(const void*) = nullptr;
+  Json (*summary)(const void*) = nullptr;                    // statistics for `frustum inspect`
+  // Rows [first, first + count) as {"columns": [...], "rows": [[...]], "total": n}; null where there is no table form.
+  Json (*table)(const void*, std::size_t first, std::size_t count) = nullptr;
+
+  // Kinds that are pixels: the raster inside, and a buffer of this kind made from one.
+  const Raster& (*raster)(const void*) = nullptr;
+  Buffer (*from_raster)(Raster) = nullptr;
+
+  // Kinds that an input may hold as a literal, {"value": ...}.
+  Buffer (*from_json)(const Json&, ParamReader&) = nullptr;
+
+  bool is_pixels() const { return raster != nullptr; }
+};
+
+// Specialised beside each kind: `template <> const BufferType& buffer_type<Mesh>();`
+template <class T>
+const BufferType& buffer_type();
+
+class Buffer {
+ public:
+  Buffer() = default;
+  template <class T>
+  Buffer(Ref<T> data) : data_(std::move(data)), type_(&buffer_type<T>()) {}
+
+  explicit operator bool() const { return data_ != nullptr; }
+  const BufferType& type() const { return *type_; }
+  const void* data() const { return data_.get(); }
+
+  template <class T>
+  bool is() const { return data_ && type_ == &buffer_type<T>(); }
+  template <class T>
+  Ref<T> as() const {  // null where the buffer is of another kind
+    return is<T>() ? std::static_pointer_cast<const T>(data_) : nullptr;
+  }
+
+  std::size_t bytes() const { return data_ ? type_->bytes(data_.get()) : 0; }
+  Health health() const { return data_ ? type_->health(data_.get()) : Health{}; }
+  Digest digest() const {
+    Hasher h;
+    h.text(type_->name);
+    type_->hash(data_.get(), h);
+    return h.done();
+  }
+
+ private:
+  std::shared_ptr<const void> data_;
+  const BufferType* type_ = nullptr;
+};
+
+}  // namespace frustum

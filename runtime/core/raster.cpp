@@ -1,0 +1,99 @@
+#include "runtime/core/raster.h"
+
+#include "runtime/core/error.h"
+
+#include <sys/mman.h>
+
+#include <cstring>
+#include <vector>
+
+namespace frustum {
+namespace {
+
+// Fresh anonymous pages: zero without touching them, on 4 KiB boundaries, given back at once when freed.
+class Pages {
+ public:
+  explicit Pages(std::size_t size) : size_(size) {
+    if (size == 0) return;
+    void* p = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (p == MAP_FAILED) throw WorldError("out_of_memory", "no memory for a raster of " + std::to_string(size) + " bytes");
+    data_ = static_cast<std::byte*>(p);
+  }
+  ~Pages() {
+    if (data_ != nullptr) munmap(data_, size_);
+  }
+  Pages(const Pages&) = delete;
+  Pages& operator=(const Pages&) = delete;
+  std::byte* data() const { return data_; }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::byte* data_ = nullptr;
+  std::size_t size_;
+};
+
+std::size_t storage_bytes(const Frame& f) {
+  const auto row = static_cast<std::size_t>(padded_row(f.window.width()));
+  std::size_t sum = 0;
+  for (const Plane& p : f.planes)
+    sum += row * static_cast<std::size_t>(f.window.height()) * static_cast<std::size_t>(f.samples()) * bytes_of(p.kind);
+  return sum;
+}
+
+}  // namespace
+
+struct Raster::Storage {
+  Frame frame;
+  Pages pages;
+  std::vector<std::byte*> planes;
+
+  explicit Storage(Frame f) : frame(std::move(f)), pages(storage_bytes(frame)) {
+    const auto values = static_cast<std::size_t>(padded_row(frame.window.width())) *
+                        static_cast<std::size_t>(frame.window.height()) * static_cast<std::size_t>(frame.samples());
+    std::byte* next = pages.data();
+    for (const Plane& p : frame.planes) {
+      planes.push_back(next);
+      if (next != nullptr) next += values * bytes_of(p.kind);
+    }
+  }
+};
+
+Raster::Raster(Frame frame) : storage_(std::make_shared<const Storage>(std::move(frame))) {}
+
+const Frame& Raster::frame() const { return storage_->frame; }
+std::size_t Raster::bytes() const { return storage_->pages.size(); }
+
+Tile Raster::view() const {
+  const Frame& f = storage_->frame;
+  const std::ptrdiff_t row = padded_row(f.window.width());
+  return {&f, f.window, f.window, row, row * f.window.height(), storage_->planes};
+}
+
+double Raster::value(int plane, int sample, int x, int y) const {
+  switch (frame().planes[static_cast<std::size_t>(plane)].kind) {
+    case PlaneKind::f32: return at<float>(plane, sample, x, y);
+    case PlaneKind::f64: return at<double>(plane, sample, x, y);
+    case PlaneKind::u32: return at<std::uint32_t>(plane, sample, x, y);
+  }
+  return 0;
+}
+
+void copy(const Tile& from, const Tile& to) {
+  const Rect r = intersection(from.rect(), to.rect());
+  if (r.empty()) return;
+  const Tile a = from.part(r), b = to.part(r);
+  const auto& planes = a.frame().planes;
+  for (int p = 0; p < static_cast<int>(planes.size()); ++p) {
+    if (!a.has(p) || !b.has(p)) continue;
+    const PlaneKind kind = planes[static_cast<std::size_t>(p)].kind;
+    const std::size_t row_bytes = static_cast<std::size_t>(r.width()) * bytes_of(kind);
+    for (int s = 0; s < a.samples(); ++s)
+      for (int y = r.y0; y < r.y1; ++y) switch (kind) {
+          case PlaneKind::f32: std::memcpy(b.row<float>(p, s, y), a.row<float>(p, s, y), row_bytes); break;
+          case PlaneKind::f64: std::memcpy(b.row<double>(p, s, y), a.row<double>(p, s, y), row_bytes); break;
+          case PlaneKind::u32: std::memcpy(b.row<std::uint32_t>(p, s, y), a.row<std::uint32_t>(p, s, y), row_bytes); break;
+        }
+  }
+}
+
+}  // namespace frustum
