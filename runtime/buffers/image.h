@@ -8,7 +8,16 @@
 
 namespace frustum {
 
-// Any named planes: "R" "G" "B" "A" of colour, or the attributes of visible points ("uv.u", "N.x", "P.x", "id").
+// Any named planes: "R" "G" "B" "A" of colour, or the attributes of visible points.
+//
+// The points of rasterize.attributes hold, at each covered sample (all zero and id = no_face elsewhere), those of
+//   id                         u32   the face seen
+//   uv.u uv.v                  real  texture coordinates
+//   uv.du_dx uv.dv_dx uv.du_dy uv.dv_dy   their screen derivatives, per pixel
+//   N.x N.y N.z                real  interpolated world-space normal, not renormalised
+//   P.x P.y P.z                real  world-space position
+//   w                          real  distance along the view axis (clip w)
+// and any other column NAME of the mesh as NAME.x NAME.y NAME.z NAME.w (NAME alone for width 1).
 struct Image {
   Raster raster;
 };
