@@ -1,0 +1,49 @@
+// What a run says about itself while it runs. The progress bar, the event stream, the trace and the studio listen.
+#pragma once
+
+#include "runtime/core/buffer.h"
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace frustum {
+
+enum class CacheVerdict : std::uint8_t { off, miss, hit };
+std::string_view name_of(CacheVerdict);
+
+// One piece of work that ended: a geometry node, the preparation of a pixel node, or a pass over tiles.
+struct WorkDone {
+  enum class Kind : std::uint8_t { node, prepare, pixels };
+  Kind kind = Kind::node;
+  std::vector<std::string> nodes;            // ids: one, or for `pixels` all that were fused
+  std::chrono::nanoseconds start{0}, time{0};  // since the run began; wall time
+  std::uint64_t bytes = 0;                   // of the buffers that it published
+  CacheVerdict cache = CacheVerdict::off;
+  int thread = 0;                            // a small number, 0 is the one that started the run
+  std::vector<std::pair<std::string, std::uint64_t>> counters;
+};
+
+// Within a pass over tiles, the share of each fused node (summed over all threads).
+struct PixelNodeTime {
+  std::string node;
+  std::chrono::nanoseconds time{0};
+  std::uint64_t pixels = 0;  // filled, margins included
+};
+
+// Called from several threads, one call at a time.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  virtual void planned(std::size_t /*work_items*/) {}
+  virtual void started(std::string_view /*node*/) {}
+  virtual void progress(std::string_view /*node*/, double /*fraction*/) {}
+  virtual void done(const WorkDone&) {}
+  virtual void pixel_times(const std::vector<PixelNodeTime>&) {}
+  virtual void warned(std::string_view /*node*/, std::string_view /*code*/, std::string_view /*message*/) {}
+};
+
+}  // namespace frustum

@@ -1,0 +1,49 @@
+// Runs a plan: geometry in parallel, pixels in fused passes over tiles, finished bands to sinks.
+#pragma once
+
+#include "runtime/core/sink.h"
+#include "runtime/graph/cache.h"
+#include "runtime/graph/events.h"
+#include "runtime/graph/plan.h"
+
+#include <map>
+#include <optional>
+#include <string>
+
+namespace frustum {
+
+struct RunOptions {
+  Demand demand;
+  std::optional<Rect> region;              // of every pixel root; same bytes as that part of the whole
+  std::string out_folder = "out";
+  MakeSink make_sink;                      // required where demand.outputs is not empty
+  int threads = 0;                         // 0: all processors
+  int tile_edge = 0;                       // 0: chosen so that live planes stay within 1 MB; -1: one tile, the whole frame
+  bool fuse = true;
+  std::uint64_t memory = 0;                // bytes of buffers that may be live at once; 0: no limit
+  const CancelFlag* cancel = nullptr;
+  Observer* observer = nullptr;
+  MemoryCache* cache = nullptr;            // null: nothing is kept
+  std::optional<int> frame;                // replaces {frame} in output names
+};
+
+struct Culprit {
+  std::string node, port;  // the first node, in running order, that made a NaN or an infinity
+  std::string where;       // "plane R, pixel 3,4, sample 0", "column position, vertex 17"
+  std::string inputs;      // its inputs there, as text; empty where they are no numbers
+  Health health;
+};
+
+struct RunResult {
+  std::map<PortRef, Buffer> buffers;       // of demand.ports
+  std::vector<std::string> files;          // written, in order of the outputs
+  Diagnostics problems;                    // runtime errors and warnings, each at its node's place
+  std::optional<Culprit> culprit;
+  std::uint64_t peak_bytes = 0;            // of live buffers
+  enum class End { done, failed, world_failed, cancelled } end = End::done;
+};
+
+// Never throws for what a graph or the world does; everything ends as a RunResult.
+RunResult run_graph(const Graph&, const RunOptions&);
+
+}  // namespace frustum
