@@ -32,9 +32,7 @@ inline double power_of_two(double n) {
 }
 
 // Nearest integer, ties to even. Requires |x| < 2^51.
-constexpr double nearest_integer(double x) {
-  return (x + round_to_integer) - round_to_integer;
-}
+constexpr double nearest_integer(double x) { return (x + round_to_integer) - round_to_integer; }
 
 // A positive, finite x as 2^k m, with m in [sqrt 1/2, sqrt 2).
 struct Binade {
@@ -184,8 +182,10 @@ R log(R x) {
 // integer exponents only.
 template <std::floating_point R>
 R pow(R x, R y) {
-  if constexpr (sizeof(R) == 4) return elementary::pow_float(x, y);
-  else return elementary::pow_double(x, y);
+  if constexpr (sizeof(R) == 4)
+    return elementary::pow_float(x, y);
+  else
+    return elementary::pow_double(x, y);
 }
 
 }  // namespace frustum::kernels

@@ -26,7 +26,9 @@ inline constexpr std::array<std::uint64_t, 20> two_over_pi_bits = {
 
 // 64 of those bits, the first of weight 2^-(start + 1); zeros in front of the point.
 constexpr std::uint64_t two_over_pi_window(int start) {
-  const auto word = [](int i) { return i < 0 || i >= 20 ? 0 : two_over_pi_bits[static_cast<std::size_t>(i)]; };
+  const auto word = [](int i) {
+    return i < 0 || i >= 20 ? 0 : two_over_pi_bits[static_cast<std::size_t>(i)];
+  };
   const int i = start >> 6, shift = start & 63;
   return shift == 0 ? word(i) : word(i) << shift | word(i + 1) >> (64 - shift);
 }

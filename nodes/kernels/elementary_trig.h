@@ -42,7 +42,8 @@ inline Reduced reduce_degrees(double degrees) {
   const double r = turn - q * 90;
   if (q == 0 && r < 0x1p-900 && r > -0x1p-900) return {{r * radians_hi, 0.0}, 0};
   const auto p = two_product(r, radians_hi);
-  return {fast_two_sum(p.hi, p.lo + r * radians_lo), static_cast<unsigned>(static_cast<std::int64_t>(q)) & 3U};
+  return {fast_two_sum(p.hi, p.lo + r * radians_lo),
+          static_cast<unsigned>(static_cast<std::int64_t>(q)) & 3U};
 }
 
 // sin and cos of |r| <= pi/4 as unevaluated sums; relative error of each sum below 2^-55.

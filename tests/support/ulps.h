@@ -15,7 +15,8 @@ template <class R>
 double ulps(R got, long double want) {
   const R rounded = static_cast<R>(want);
   if (std::isnan(got) || std::isnan(want)) return std::numeric_limits<double>::infinity();
-  if (std::isinf(rounded) || std::isinf(got)) return got == rounded ? 0 : std::numeric_limits<double>::infinity();
+  if (std::isinf(rounded) || std::isinf(got))
+    return got == rounded ? 0 : std::numeric_limits<double>::infinity();
   if (want == 0) return got == 0 ? 0 : std::numeric_limits<double>::infinity();
   int exponent = 0;
   std::frexp(want, &exponent);

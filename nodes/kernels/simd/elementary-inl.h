@@ -43,7 +43,8 @@ HWY_INLINE hn::Vec<D> nearest_integer(D d, hn::Vec<D> x) {
 template <class D>
 HWY_INLINE hn::Vec<D> power_of_two(D d, hn::Vec<D> n) {
   const hn::RebindToUnsigned<D> du;
-  return hn::BitCast(d, hn::ShiftLeft<52>(hn::BitCast(du, hn::Add(n, hn::Set(d, scalar::round_to_exponent)))));
+  return hn::BitCast(d,
+                     hn::ShiftLeft<52>(hn::BitCast(du, hn::Add(n, hn::Set(d, scalar::round_to_exponent)))));
 }
 
 // NaN lanes give an unspecified number; callers replace them.
@@ -123,9 +124,8 @@ HWY_INLINE hn::Vec<D> nan_where(D d, hn::Mask<D> mask, hn::Vec<D> v) {
 template <class D>
 HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> exp2(D d, hwy::HWY_NAMESPACE::Vec<D> x) {
   namespace e = elementary_detail;
-  const auto f = [](auto dd, auto v) HWY_ATTR {
-    return e::nan_where(dd, e::hn::IsNaN(v), e::exp2_short_of(dd, v));
-  };
+  const auto f = [](auto dd, auto v)
+                     HWY_ATTR { return e::nan_where(dd, e::hn::IsNaN(v), e::exp2_short_of(dd, v)); };
   return e::in_double(d, f, x);
 }
 
@@ -144,7 +144,8 @@ HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> exp(D d, hwy::HWY_NAMESPACE::Vec<D> x) {
 template <class D>
 HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> log2(D d, hwy::HWY_NAMESPACE::Vec<D> x) {
   namespace e = elementary_detail;
-  return e::in_double(d, [](auto dd, auto v) HWY_ATTR { return e::log2_short_any(dd, v); }, x);
+  return e::in_double(
+      d, [](auto dd, auto v) HWY_ATTR { return e::log2_short_any(dd, v); }, x);
 }
 
 // Natural logarithm of each lane.
@@ -162,7 +163,8 @@ HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> log(D d, hwy::HWY_NAMESPACE::Vec<D> x) {
 template <class D>
 HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> pow(D d, hwy::HWY_NAMESPACE::Vec<D> x, hwy::HWY_NAMESPACE::Vec<D> y) {
   namespace e = elementary_detail;
-  return e::in_double(d, [](auto dd, auto a, auto b) HWY_ATTR { return e::pow_short(dd, a, b); }, x, y);
+  return e::in_double(
+      d, [](auto dd, auto a, auto b) HWY_ATTR { return e::pow_short(dd, a, b); }, x, y);
 }
 
 #else  // one lane: the scalar twin itself

@@ -49,13 +49,14 @@ HWY_EXPORT(apply);
 namespace {
 
 std::vector<float> inputs(std::uint64_t seed, std::size_t n) {
-  constexpr float inf = std::numeric_limits<float>::infinity(), none = std::numeric_limits<float>::quiet_NaN();
-  const float special[] = {0, -0.0F, 1, -1, 2, -2, 0.5F, -0.5F, 3, -3, inf, -inf, none, 1e-40F, -1e-45F, 0x1p24F, -0x1p25F,
-                           16777216.0F, 0x1p120F, 127, -127, 128, -149, -150, 88.7F, -103.9F, 60};
+  constexpr float inf = std::numeric_limits<float>::infinity(),
+                  none = std::numeric_limits<float>::quiet_NaN();
+  const float special[] = {0,        -0.0F, 1,    -1,   2,      -2,      0.5F,    -0.5F,    3,
+                           -3,       inf,   -inf, none, 1e-40F, -1e-45F, 0x1p24F, -0x1p25F, 16777216.0F,
+                           0x1p120F, 127,   -127, 128,  -149,   -150,    88.7F,   -103.9F,  60};
   test::Random random(seed);
   std::vector<float> x(n);
-  for (std::size_t i = 0; i < n; ++i)
-    switch (i % 4) {
+  for (std::size_t i = 0; i < n; ++i) switch (i % 4) {
       case 0: x[i] = special[random.below(std::size(special))]; break;
       case 1: x[i] = static_cast<float>(random.magnitude(-149, 127)); break;
       case 2: x[i] = static_cast<float>(random.uniform(-100, 100)); break;
@@ -89,9 +90,11 @@ TEST(ElementarySimd, EveryTargetHasTheBitsOfTheScalarTwin) {
       HWY_DYNAMIC_DISPATCH(apply)(function, x.data(), y.data(), out.data(), n);
       std::size_t differ = 0;
       for (std::size_t i = 0; i < n; ++i)
-        if (std::bit_cast<std::uint32_t>(out[i]) != std::bit_cast<std::uint32_t>(twin(function, x[i], y[i])) && ++differ < 5)
-          ADD_FAILURE() << hwy::TargetName(target) << " function " << function << " of " << x[i] << ", " << y[i] << " is "
-                        << out[i] << ", not " << twin(function, x[i], y[i]);
+        if (std::bit_cast<std::uint32_t>(out[i]) !=
+                std::bit_cast<std::uint32_t>(twin(function, x[i], y[i])) &&
+            ++differ < 5)
+          ADD_FAILURE() << hwy::TargetName(target) << " function " << function << " of " << x[i] << ", "
+                        << y[i] << " is " << out[i] << ", not " << twin(function, x[i], y[i]);
       EXPECT_EQ(differ, 0U) << hwy::TargetName(target) << " function " << function;
     }
   }

@@ -48,7 +48,8 @@ TYPED_TEST(Elementary, ExponentialsStayWithinTheirBound) {
   const auto exp2 = [](R x) { return kernels::exp2(x); };
   this->expect_within(this->bound(0.95), exp, expl, [&] { return random.uniform(bottom, top); });
   this->expect_within(this->bound(0.95), exp, expl, [&] { return random.magnitude(-60, 1); });
-  this->expect_within(this->bound(0.95), exp2, exp2l, [&] { return random.uniform(bottom * 1.4427, top * 1.4427); });
+  this->expect_within(this->bound(0.95), exp2, exp2l,
+                      [&] { return random.uniform(bottom * 1.4427, top * 1.4427); });
 }
 
 TYPED_TEST(Elementary, LogarithmsStayWithinTheirBound) {
@@ -71,7 +72,8 @@ TYPED_TEST(Elementary, PowersStayWithinTheirBound) {
   double worst = 0;
   for (int i = 0; i < 300000; ++i) {
     // y log2(x) spreads over the whole exponent range, subnormal results included.
-    const R x = static_cast<R>(i % 2 == 0 ? 1 + random.magnitude(-18, -2) : std::fabs(random.magnitude(-40, 40)));
+    const R x =
+        static_cast<R>(i % 2 == 0 ? 1 + random.magnitude(-18, -2) : std::fabs(random.magnitude(-40, 40)));
     const double reach = random.uniform(-1.05, 1.02) * (this->is_double ? 1024 : 128);
     const R y = static_cast<R>(x == 1 ? 0 : reach / std::log2(static_cast<double>(x)));
     worst = std::max(worst, ulps<R>(kernels::pow(x, y), powl(x, y)));
@@ -103,15 +105,19 @@ TYPED_TEST(Elementary, InverseTrigonometryStaysWithinItsBound) {
   this->expect_within(this->bound(0.70), atan, atanl, [&] { return random.magnitude(-60, 60); });
   this->expect_within(this->bound(0.70), asin, asinl, [&] { return random.uniform(-1, 1); });
   this->expect_within(this->bound(0.70), acos, acosl, [&] { return random.uniform(-1, 1); });
-  this->expect_within(this->bound(0.70), acos, acosl, [&] { return 1 - std::fabs(random.magnitude(-50, 0)); });
+  this->expect_within(this->bound(0.70), acos, acosl,
+                      [&] { return 1 - std::fabs(random.magnitude(-50, 0)); });
   double worst = 0;
   const double range = this->is_double ? 900 : 120;
   for (int i = 0; i < 200000; ++i) {
     const double reach = i % 2 == 0 ? 2 : range;
-    const R y = static_cast<R>(random.magnitude(-reach, reach)), x = static_cast<R>(random.magnitude(-reach, reach));
+    const R y = static_cast<R>(random.magnitude(-reach, reach)),
+            x = static_cast<R>(random.magnitude(-reach, reach));
     const double error = ulps<R>(kernels::atan2(y, x), atan2l(y, x));
-    if (std::fabs(kernels::atan2(y, x)) < std::numeric_limits<R>::min()) EXPECT_LE(error, 1) << y << ", " << x;
-    else worst = std::max(worst, error);
+    if (std::fabs(kernels::atan2(y, x)) < std::numeric_limits<R>::min())
+      EXPECT_LE(error, 1) << y << ", " << x;
+    else
+      worst = std::max(worst, error);
   }
   EXPECT_LE(worst, this->bound(0.70));
 }
@@ -177,8 +183,9 @@ TEST(ElementarySpecialValues, FollowAnnexF) {
     EXPECT_EQ(kernels::exp2(static_cast<double>(n)), std::ldexp(1.0, n));
     EXPECT_EQ(kernels::log2(std::ldexp(1.0, n)), n);
   }
-  for (const double bad : {kernels::log(-1.0), kernels::exp(nan), kernels::sin(inf), kernels::tan(-inf),
-                           kernels::acos(1.0000001), kernels::asin(nan), kernels::pow(-2.0, 0.5), kernels::atan2(nan, 1.0)})
+  for (const double bad :
+       {kernels::log(-1.0), kernels::exp(nan), kernels::sin(inf), kernels::tan(-inf),
+        kernels::acos(1.0000001), kernels::asin(nan), kernels::pow(-2.0, 0.5), kernels::atan2(nan, 1.0)})
     EXPECT_EQ(std::bit_cast<std::uint64_t>(bad), std::bit_cast<std::uint64_t>(nan));
   for (const double odd : {kernels::sin(-0.0), kernels::tan(-0.0), kernels::asin(-0.0), kernels::atan(-0.0),
                            kernels::sin_cos_degrees(-0.0).sin})
@@ -197,7 +204,8 @@ void expect_special(R got, R want, double x, double y) {
 
 // glibc's pow and atan2 give the right special values on every processor.
 TEST(ElementarySpecialValues, OfTwoArgumentsAreThoseOfAnnexF) {
-  const double values[] = {0.0, -0.0, 1, -1, 2, -2, 0.5, -0.5, 3, -3, 1.5, inf, -inf, nan, 0x1p53, -0x1p54, 1e-320, 1e300};
+  const double values[] = {0.0, -0.0, 1,   -1,   2,   -2,     0.5,     -0.5,   3,
+                           -3,  1.5,  inf, -inf, nan, 0x1p53, -0x1p54, 1e-320, 1e300};
   for (const double x : values)
     for (const double y : values) {
       expect_special(kernels::pow(x, y), std::pow(x, y), x, y);
@@ -211,11 +219,13 @@ TEST(ElementarySpecialValues, OfTwoArgumentsAreThoseOfAnnexF) {
 TEST(ElementaryBits, AreThoseRecorded) {
   Random random(8);
   std::uint64_t mix = 0;
-  const auto add = [&mix](double v) { mix = std::rotl(mix, 7) * 0x9e3779b97f4a7c15 + std::bit_cast<std::uint64_t>(v); };
+  const auto add = [&mix](double v) {
+    mix = std::rotl(mix, 7) * 0x9e3779b97f4a7c15 + std::bit_cast<std::uint64_t>(v);
+  };
   for (int i = 0; i < 10000; ++i) {
     const double x = random.uniform(-8, 8), y = random.uniform(-8, 8);  // without libm
-    for (const double v : {kernels::exp(x), kernels::exp2(x), kernels::log(x * x), kernels::pow(x * x, y), kernels::sin(x),
-                           kernels::cos(x), kernels::tan(x), kernels::atan2(x, y)})
+    for (const double v : {kernels::exp(x), kernels::exp2(x), kernels::log(x * x), kernels::pow(x * x, y),
+                           kernels::sin(x), kernels::cos(x), kernels::tan(x), kernels::atan2(x, y)})
       add(v);
     add(static_cast<double>(kernels::pow(static_cast<float>(x * x), static_cast<float>(y))));
   }
