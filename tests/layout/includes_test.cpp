@@ -84,7 +84,7 @@ bool is_header(std::string_view path) { return path.ends_with(".h"); }
 std::size_t token_end(std::string_view text, std::size_t i) {
   const auto after = [&](std::string_view mark, std::size_t from) {
     const std::size_t found = text.find(mark, from);
-    return found == text.npos ? text.size() : found + mark.size();
+    return found == std::string_view::npos ? text.size() : found + mark.size();
   };
   const auto rest = text.substr(i);
   const bool inside_a_word = i > 0 && is_word(text[i - 1]);
@@ -213,7 +213,7 @@ struct Case {
   std::string_view fault;  // a part of the one message; empty: no fault
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
 class IncludesOf : public testing::TestWithParam<Case> {};
 
