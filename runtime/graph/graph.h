@@ -53,17 +53,24 @@ struct GraphOutput {
   SourcePlace place;
 };
 
+// A name for a port besides "node.port": an output without a file, a port of a graph used as a node ("draw.image").
+struct PortName {
+  std::string name;
+  PortRef port;
+};
+
 struct Graph {
   std::string title;
   std::string file;                   // empty for a graph that was not read from a file
   std::uint64_t seed = 0;
   std::vector<GraphNode> nodes;       // every node stands after those that feed it
   std::vector<GraphOutput> outputs;   // in the order of the file
+  std::vector<PortName> port_names;
 
   const Port& port(PortRef p) const { return nodes[p.node].type->outputs[p.port]; }
   std::string name(PortRef p) const { return nodes[p.node].id + "." + port(p).name; }
 
-  // "node.port", "node" (its first declared output), "draw/lit.color"; null where there is none.
+  // "node.port", "node" (its first declared output), "draw/lit.color" or one of port_names; null where there is none.
   std::optional<PortRef> find_port(std::string_view address) const;
   const GraphOutput* find_output(std::string_view name) const;
   // Every address that find_port and find_output know, for suggestions.

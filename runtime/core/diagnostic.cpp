@@ -1,0 +1,154 @@
+#include "runtime/core/diagnostic.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <iterator>
+
+namespace frustum {
+namespace {
+
+constexpr std::string_view red = "\x1b[1;31m", yellow = "\x1b[1;33m", bold = "\x1b[1m", green = "\x1b[32m",
+                           off = "\x1b[0m";
+
+std::string_view name_of(Severity s) { return s == Severity::error ? "error" : "warning"; }
+
+// Control characters of user text must neither end a line of ours nor drive the terminal.
+std::string printable(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
+      out += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    else
+      out += c;
+  }
+  return out;
+}
+
+// "teapot.json:17:24 /nodes/cut/type", without the parts that are not known.
+std::string place(std::string_view file, int line, int column, std::string_view pointer) {
+  std::string out = printable(file);
+  if (line > 0) out += fmt::format("{}{}:{}", out.empty() ? "" : ":", line, column);
+  if (!pointer.empty()) out += fmt::format("{}{}", out.empty() ? "" : " ", printable(pointer));
+  return out;
+}
+
+std::string quoted_list(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    out += fmt::format("{}'{}'", i == 0 ? "" : i + 1 == names.size() ? " or " : ", ", printable(names[i]));
+  return out;
+}
+
+void append_text(std::string& out, const Diagnostic& d, bool color) {
+  const auto paint = [color](std::string_view code) { return color ? code : std::string_view{}; };
+  const std::string where = place(d.file, d.line, d.column, d.pointer);
+  out += fmt::format("{}{}[{}]{}{}{}{}{}\n", paint(d.severity == Severity::error ? red : yellow),
+                     name_of(d.severity), d.code, paint(off), where.empty() ? "" : " ", paint(bold), where,
+                     paint(off));
+  out += fmt::format("  {}\n", printable(d.message));
+  for (const Related& r : d.related)
+    out += fmt::format("  {}: {}\n", place(r.file.empty() ? d.file : r.file, r.line, r.column, r.pointer),
+                       printable(r.message));
+  if (!d.suggestions.empty())
+    out += fmt::format("  did you mean {}{}{}?\n", paint(green), quoted_list(d.suggestions), paint(off));
+}
+
+Json to_json(const Related& r) {
+  return {{"file", r.file},
+          {"pointer", r.pointer},
+          {"line", r.line},
+          {"column", r.column},
+          {"message", r.message}};
+}
+
+// Edits between two words, a swap of neighbours counting one (optimal string alignment), or limit + 1 where there are
+// more than `limit`. Damerau 1964; restricted so that no substring is edited twice. O(|a| |b|).
+std::size_t edits(std::string_view a, std::string_view b, std::size_t limit) {
+  const std::size_t longer = std::max(a.size(), b.size()), shorter = std::min(a.size(), b.size());
+  if (longer - shorter > limit) return limit + 1;
+  std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) above[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replace = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({replace, above[j] + 1, row[j - 1] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    std::swap(before, above);
+    std::swap(above, row);
+  }
+  return above[b.size()];
+}
+
+}  // namespace
+
+bool Diagnostics::has_errors() const {
+  return std::any_of(list_.begin(), list_.end(),
+                     [](const Diagnostic& d) { return d.severity == Severity::error; });
+}
+
+std::string to_text(const Diagnostics& diagnostics, bool color) {
+  std::string out;
+  for (const Diagnostic& d : diagnostics.list()) append_text(out, d, color);
+  return out;
+}
+
+Json to_json(const Diagnostics& diagnostics) {
+  Json list = Json::array();
+  for (const Diagnostic& d : diagnostics.list()) {
+    Json related = Json::array();
+    for (const Related& r : d.related) related.push_back(to_json(r));
+    list.push_back({{"code", d.code},
+                    {"severity", name_of(d.severity)},
+                    {"file", d.file},
+                    {"pointer", d.pointer},
+                    {"line", d.line},
+                    {"column", d.column},
+                    {"message", d.message},
+                    {"expected", d.expected},
+                    {"got", d.got},
+                    {"suggestions", d.suggestions},
+                    {"related", std::move(related)}});
+  }
+  return {{"diagnostics", std::move(list)}};
+}
+
+std::string child_pointer(std::string_view pointer, std::string_view key) {
+  std::string out;
+  out.reserve(pointer.size() + key.size() + 1);
+  out.append(pointer).push_back('/');
+  for (const char c : key) {
+    if (c == '~')
+      out += "~0";
+    else if (c == '/')
+      out += "~1";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string child_pointer(std::string_view pointer, std::size_t index) {
+  return child_pointer(pointer, std::to_string(index));
+}
+
+std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> known) {
+  // No name of ours is longer; the bound keeps a hostile key of a megabyte from costing more than a look.
+  constexpr std::size_t longest = 200, most = 3;
+  if (name.empty() || name.size() > longest) return {};
+  const std::size_t limit = std::max<std::size_t>(1, name.size() / 3);
+  std::vector<std::pair<std::size_t, const std::string*>> near;
+  for (const std::string& k : known)
+    if (const std::size_t n = edits(name, k, limit); n <= limit) near.emplace_back(n, &k);
+  std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (near.size() > most) near.resize(most);
+  std::vector<std::string> out;
+  for (const auto& [n, k] : near) out.push_back(*k);
+  return out;
+}
+
+}  // namespace frustum
