@@ -77,10 +77,10 @@ using PlaneList = std::vector<Plane>;
 enum class Alpha : std::uint8_t { none, straight, premultiplied };
 
 struct Frame {
-  Rect window;                      // absolute pixels; row 0 on top
-  Ref<SamplePattern> pattern;       // null: one value a pixel
-  PlaneList planes;
-  std::string color_space;          // a name of the colour configuration; empty for data that is no colour
+  Rect window = {};                 // absolute pixels; row 0 on top
+  Ref<SamplePattern> pattern = {};  // null: one value a pixel
+  PlaneList planes = {};
+  std::string color_space = {};     // a name of the colour configuration; empty for data that is no colour
   Alpha alpha = Alpha::none;
 
   int samples() const { return pattern ? pattern->samples : 1; }

@@ -1,0 +1,30 @@
+// From typed functions over a kind of buffer to its BufferType.
+#pragma once
+
+#include "runtime/core/buffer.h"
+
+#include <utility>
+
+namespace frustum {
+
+// `Ops` has the static functions bytes(const T&), hash(const T&, Hasher&), health(const T&), summary(const T&), and
+// may have table(const T&, first, count), raster(const T&), from_raster(Raster) and from_json(const Json&, ParamReader&).
+template <class T, class Ops>
+BufferType make_buffer_type(std::string_view name, std::string_view doc, std::string_view color) {
+  BufferType t{.name = name, .doc = doc, .color = color};
+  t.bytes = [](const void* p) -> std::size_t { return Ops::bytes(*static_cast<const T*>(p)); };
+  t.hash = [](const void* p, Hasher& h) { Ops::hash(*static_cast<const T*>(p), h); };
+  t.health = [](const void* p) { return Ops::health(*static_cast<const T*>(p)); };
+  t.summary = [](const void* p) { return Ops::summary(*static_cast<const T*>(p)); };
+  if constexpr (requires { &Ops::table; })
+    t.table = [](const void* p, std::size_t first, std::size_t count) {
+      return Ops::table(*static_cast<const T*>(p), first, count);
+    };
+  if constexpr (requires { &Ops::raster; })
+    t.raster = [](const void* p) -> const Raster& { return Ops::raster(*static_cast<const T*>(p)); };
+  if constexpr (requires { &Ops::from_raster; }) t.from_raster = &Ops::from_raster;
+  if constexpr (requires { &Ops::from_json; }) t.from_json = &Ops::from_json;
+  return t;
+}
+
+}  // namespace frustum

@@ -1,0 +1,52 @@
+#include "runtime/buffers/camera.h"
+
+#include "runtime/buffers/buffer_ops.h"
+#include "runtime/buffers/numbers.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace frustum {
+namespace {
+
+Json json(const glm::dvec3& v) { return {json_number(v.x), json_number(v.y), json_number(v.z)}; }
+
+struct Ops {
+  static std::size_t bytes(const Camera& c) { return sizeof c; }
+  static void hash(const Camera& c, Hasher& h) {
+    for (const glm::dvec3& v : {c.eye, c.target, c.up}) h.value(v.x).value(v.y).value(v.z);
+    h.value(c.fov_y).value(c.near_z).value(c.far_z).value(c.height).value(c.reversed_z);
+    h.value(c.resolution.x).value(c.resolution.y);
+  }
+  // far_z may be infinite; as a NaN it still counts.
+  static Health health(const Camera& c) {
+    const std::pair<std::string_view, double> values[] = {
+        {"eye", c.eye.x},       {"eye", c.eye.y},       {"eye", c.eye.z},   {"target", c.target.x}, {"target", c.target.y},
+        {"target", c.target.z}, {"up", c.up.x},         {"up", c.up.y},     {"up", c.up.z},         {"fov_y", c.fov_y},
+        {"near_z", c.near_z},   {"height", c.height},   {"far_z", std::isinf(c.far_z) && c.far_z > 0 ? 0 : c.far_z}};
+    return health_of("camera", values);
+  }
+  static Json summary(const Camera& c) {
+    return {{"eye", json(c.eye)},
+            {"target", json(c.target)},
+            {"up", json(c.up)},
+            {"fov_y_deg", json_number(c.fov_y * 180 / std::numbers::pi)},
+            {"near", json_number(c.near_z)},
+            {"far", json_number(c.far_z)},
+            {"height", json_number(c.height)},
+            {"reversed_z", c.reversed_z},
+            {"resolution_px", {c.resolution.x, c.resolution.y}}};
+  }
+};
+
+}  // namespace
+
+template <>
+const BufferType& buffer_type<Camera>() {
+  static const BufferType type = make_buffer_type<Camera, Ops>("camera", "Where the picture is taken from, and its size.", "#6fa35c");
+  return type;
+}
+
+}  // namespace frustum

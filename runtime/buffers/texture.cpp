@@ -1,0 +1,93 @@
+#include "runtime/buffers/texture.h"
+
+#include "runtime/buffers/buffer_ops.h"
+#include "runtime/buffers/numbers.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace frustum {
+namespace {
+
+Json json(const glm::dvec3& v) { return {json_number(v.x), json_number(v.y), json_number(v.z)}; }
+
+Health health_of(const Checker& c) {
+  const std::pair<std::string_view, double> values[] = {{"scale", c.scale},  {"even", c.even.x}, {"even", c.even.y},
+                                                        {"even", c.even.z}, {"odd", c.odd.x},   {"odd", c.odd.y},
+                                                        {"odd", c.odd.z}};
+  return frustum::health_of("checker", values);
+}
+
+Health health_of(const MipPyramid& p) {
+  Health sum;
+  for (std::size_t l = 0; l < p.levels.size(); ++l) {
+    const auto& level = p.levels[l];
+    sum.add(to_health(scan(std::span<const float>(level.rgba)), level.rgba.size(), [&](std::size_t i) {
+      const std::size_t texel = i / 4, width = static_cast<std::size_t>(level.width);
+      return fmt::format("level {}, texel {},{}", l, texel % width, texel / width);
+    }));
+  }
+  return sum;
+}
+
+Json summary_of(const Checker& c) {
+  return {{"source", "checker"}, {"scale", json_number(c.scale)}, {"even", json(c.even)}, {"odd", json(c.odd)}};
+}
+
+Json summary_of(const MipPyramid& p) {
+  Json levels = Json::array();
+  for (const auto& level : p.levels) {
+    Hasher h;
+    h.span<float>(level.rgba);
+    levels.push_back({{"width", level.width}, {"height", level.height}, {"digest", to_hex(h.done())}});
+  }
+  Json channels = Json::array();
+  for (std::size_t k = 0; k < 4 && !p.levels.empty(); ++k) {
+    std::vector<float> values;
+    for (std::size_t i = k; i < p.levels[0].rgba.size(); i += 4) values.push_back(p.levels[0].rgba[i]);
+    Json channel = {{"name", std::string(1, "RGBA"[k])}};
+    channel.update(to_json(measure(std::move(values))));
+    channels.push_back(std::move(channel));
+  }
+  return {{"source", "image"},
+          {"wrap_u", choices(p.wrap_u)[static_cast<std::size_t>(p.wrap_u)].second},
+          {"wrap_v", choices(p.wrap_v)[static_cast<std::size_t>(p.wrap_v)].second},
+          {"levels", std::move(levels)},
+          {"channels", std::move(channels)}};
+}
+
+struct Ops {
+  static std::size_t bytes(const Texture& t) {
+    std::size_t sum = sizeof t;
+    if (const auto* p = std::get_if<MipPyramid>(&t.source))
+      for (const auto& level : p->levels) sum += level.rgba.size() * sizeof(float);
+    return sum;
+  }
+  static void hash(const Texture& t, Hasher& h) {
+    h.value(t.source.index());
+    if (const auto* c = std::get_if<Checker>(&t.source)) {
+      h.value(c->scale);
+      for (const glm::dvec3& v : {c->even, c->odd}) h.value(v.x).value(v.y).value(v.z);
+    }
+    if (const auto* p = std::get_if<MipPyramid>(&t.source)) {
+      h.value(p->wrap_u).value(p->wrap_v).value(p->levels.size());
+      for (const auto& level : p->levels) h.value(level.width).value(level.height).span<float>(level.rgba);
+    }
+  }
+  static Health health(const Texture& t) {
+    return std::visit([](const auto& source) { return health_of(source); }, t.source);
+  }
+  static Json summary(const Texture& t) {
+    return std::visit([](const auto& source) { return summary_of(source); }, t.source);
+  }
+};
+
+}  // namespace
+
+template <>
+const BufferType& buffer_type<Texture>() {
+  static const BufferType type = make_buffer_type<Texture, Ops>("texture", "A colour for every u and v.", "#c78f3f");
+  return type;
+}
+
+}  // namespace frustum
