@@ -3,9 +3,11 @@
 
 #include "runtime/core/diagnostic.h"
 #include "runtime/core/digest.h"
+#include "runtime/core/health.h"
 #include "runtime/core/raster.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,18 +16,6 @@ namespace frustum {
 
 class Buffer;
 class ParamReader;
-
-// Counts of what should not be there, and where the first of it is ("column position, vertex 17"; "plane Z, pixel 3,4").
-struct Health {
-  std::uint64_t values = 0, nan = 0, positive_infinity = 0, negative_infinity = 0;
-  std::string first = {};
-  bool finite() const { return nan + positive_infinity + negative_infinity == 0; }
-  void add(const Health& more) {
-    if (finite()) first = more.first;
-    values += more.values, nan += more.nan;
-    positive_infinity += more.positive_infinity, negative_infinity += more.negative_infinity;
-  }
-};
 
 // One kind of buffer: what the runtime can do with it without knowing what it is.
 struct BufferType {
@@ -39,6 +29,9 @@ struct BufferType {
   Json (*summary)(const void*) = nullptr;                    // statistics for `frustum inspect`
   // Rows [first, first + count) as {"columns": [...], "rows": [[...]], "total": n}; null where there is no table form.
   Json (*table)(const void*, std::size_t first, std::size_t count) = nullptr;
+
+  // Kinds that share storage: every piece with its bytes, so that memory shared by two buffers counts once.
+  void (*parts)(const void*, const std::function<void(const void* storage, std::size_t bytes)>&) = nullptr;
 
   // Kinds that are pixels: the raster inside, and a buffer of this kind made from one.
   const Raster& (*raster)(const void*) = nullptr;

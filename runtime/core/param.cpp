@@ -161,6 +161,7 @@ ParamType file_type() {
                                    out.resolved = (std::filesystem::path(reader.folder()) / out.written).string();
                                  });
   t.write = [](const void* v) { return Json(static_cast<const FilePath*>(v)->written); };
+  t.files = [](const void* v, const auto& visit) { visit(*static_cast<const FilePath*>(v)); };
   return t;
 }
 
@@ -252,6 +253,10 @@ ParamType array_type(const ParamType& element, std::size_t count, ArrayAccess ac
     for (std::size_t i = 0; i < access.size(v); ++i) out.push_back(element.write(access.at(const_cast<void*>(v), i)));
     return out;
   };
+  if (element.files)
+    t.files = [=, &element](const void* v, const auto& visit) {
+      for (std::size_t i = 0; i < access.size(v); ++i) element.files(access.at(const_cast<void*>(v), i), visit);
+    };
   return t;
 }
 
@@ -267,6 +272,10 @@ ParamType optional_type(const ParamType& element, OptionalAccess access) {
     const void* inner = access.get(v);
     return inner != nullptr ? element.write(inner) : Json(nullptr);
   };
+  if (element.files)
+    t.files = [=, &element](const void* v, const auto& visit) {
+      if (const void* inner = access.get(v)) element.files(inner, visit);
+    };
   return t;
 }
 
@@ -275,6 +284,10 @@ ParamType record_type(ParamType t) {
     read_record(copy, j, value, reader);
   };
   t.write = [copy = t](const void* v) { return write_record(copy, v); };
+  t.files = [fields = t.fields](const void* v, const auto& visit) {
+    for (const ParamField& f : fields)
+      if (f.type->files) f.type->files(static_cast<const char*>(v) + f.offset, visit);
+  };
   return t;
 }
 

@@ -113,6 +113,8 @@ struct ParamType {
   // Reads into `value`, leaving the default where the JSON is wrong, which is then reported.
   std::function<void(const Json&, void* value, const ParamOptions&, ParamReader&)> read = {};
   std::function<Json(const void* value)> write = {};
+  // Calls `visit` for every FilePath inside; empty for types that hold none.
+  std::function<void(const void* value, const std::function<void(const FilePath&)>& visit)> files = {};
 };
 
 // Draft 2020-12 JSON Schema of a type; `defaults` is null or points to a default value.

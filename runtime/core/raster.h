@@ -38,6 +38,8 @@ class Tile {
            (y - stored_.y0) * row_stride_ + (rect_.x0 - stored_.x0);
   }
 
+  bool shares_storage(const Tile& other) const { return planes_.data() == other.planes_.data(); }
+
   // The same storage seen through another rectangle of stored().
   Tile part(Rect rect) const {
     assert(stored_.contains(rect));

@@ -1,0 +1,61 @@
+#include "runtime/core/health.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace frustum {
+namespace {
+
+template <class R>
+using Bits = std::conditional_t<sizeof(R) == 4, std::uint32_t, std::uint64_t>;
+
+// A real is not finite exactly where all its exponent bits are set.
+template <class R>
+bool all_finite(const R* row, int n) {
+  constexpr Bits<R> exponent = std::bit_cast<Bits<R>>(std::numeric_limits<R>::infinity());
+  Bits<R> bad = 0;
+  for (int i = 0; i < n; ++i) bad |= static_cast<Bits<R>>((std::bit_cast<Bits<R>>(row[i]) & exponent) == exponent);
+  return bad == 0;
+}
+
+template <class R>
+void inspect_row(const Tile& t, int plane, int sample, int y, Health& h) {
+  const R* row = t.row<const R>(plane, sample, y);
+  const int n = t.rect().width();
+  h.values += static_cast<std::uint64_t>(n);
+  if (all_finite(row, n)) return;
+  for (int i = 0; i < n; ++i) {
+    if (std::isfinite(row[i])) continue;
+    if (h.finite()) {
+      h.pixel = {t.rect().x0 + i, y};
+      h.first = fmt::format("plane {}, sample {}, pixel {},{}", t.frame().planes[static_cast<std::size_t>(plane)].name,
+                            sample, t.rect().x0 + i, y);
+    }
+    if (std::isnan(row[i])) ++h.nan;
+    else if (row[i] > 0) ++h.positive_infinity;
+    else ++h.negative_infinity;
+  }
+}
+
+}  // namespace
+
+Health health_of(const Tile& t) {
+  Health h;
+  if (t.empty() || t.rect().empty()) return h;
+  for (int p = 0; p < static_cast<int>(t.frame().planes.size()); ++p) {
+    const PlaneKind kind = t.frame().planes[static_cast<std::size_t>(p)].kind;
+    if (!t.has(p) || kind == PlaneKind::u32) continue;
+    for (int s = 0; s < t.samples(); ++s)
+      for (int y = t.rect().y0; y < t.rect().y1; ++y) {
+        if (kind == PlaneKind::f32) inspect_row<float>(t, p, s, y, h);
+        else inspect_row<double>(t, p, s, y, h);
+      }
+  }
+  return h;
+}
+
+}  // namespace frustum
