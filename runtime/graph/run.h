@@ -43,6 +43,9 @@ struct RunResult {
   enum class End { done, failed, world_failed, cancelled } end = End::done;
 };
 
+// Where an output's file goes: under the output folder, {frame} replaced by four digits.
+std::string output_path(const GraphOutput&, const RunOptions&);
+
 // Never throws for what a graph or the world does; everything ends as a RunResult.
 RunResult run_graph(const Graph&, const RunOptions&);
 

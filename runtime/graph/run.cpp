@@ -1,0 +1,314 @@
+#include "runtime/graph/run.h"
+
+#include "runtime/graph/keys.h"
+#include "runtime/graph/run_state.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <new>
+
+namespace frustum {
+namespace {
+
+using End = RunResult::End;
+
+// Runs the steps of a plan: each as soon as those it waits for are over, on whichever thread is free.
+class Runner {
+ public:
+  Runner(const Graph& graph, const RunOptions& options) : state_(graph, options) {}
+
+  RunResult run() {
+    find_in_cache();
+    state_.plan = make_plan(state_.graph, state_.options.demand,
+                            {.fuse = state_.options.fuse, .given = [this](PortRef p) { return static_cast<bool>(state_.buffer(p)); }});
+    wanted_.resize(state_.graph.nodes.size());
+    for (const PlannedNode& n : state_.plan.nodes) wanted_[n.node] = n.wanted_outputs;
+    announce_uses();
+    state_.observe([&](Observer& o) { o.planned(state_.plan.steps.size()); });
+    run_steps();
+    return result();
+  }
+
+ private:
+  // ----- what is there already
+
+  void find_in_cache() {
+    MemoryCache* cache = state_.options.cache;
+    if (cache == nullptr) return;
+    state_.keys = node_keys(state_.graph);
+    for (std::size_t n = 0; n < state_.graph.nodes.size(); ++n) {
+      const NodeType& type = *state_.graph.nodes[n].type;
+      for (std::size_t p = 0; p < type.outputs.size(); ++p)
+        if (const auto found = cache->find(output_key(state_.keys[n], p)))
+          if (!found->buffers.empty() && usable(PortRef{n, p})) state_.publish({n, p}, found->buffers.front());
+    }
+  }
+
+  // With a region, a demanded port is asked for in part; the cache holds only whole ones.
+  bool usable(PortRef p) const {
+    if (!state_.options.region || !state_.graph.nodes[p.node].type->is_pixel()) return true;
+    const auto& ports = state_.options.demand.ports;
+    return std::find(ports.begin(), ports.end(), p) == ports.end();
+  }
+
+  // ----- lifetimes
+
+  // The ports that a step reads from memory; its buffers must live until it is over.
+  template <class F>
+  void for_each_use(const Step& step, F&& f) const {
+    if (step.kind == Step::Kind::node) return for_each_link(step.index, f);
+    const PixelPass& pass = state_.plan.passes[step.index];
+    for (const std::size_t n : pass.nodes) for_each_link(n, f);
+    for (const std::size_t o : pass.outputs)
+      for (const OutputLayer& l : state_.graph.outputs[o].layers) f(l.from);
+  }
+
+  template <class F>
+  void for_each_link(std::size_t node, F&& f) const {
+    for (const auto& sources : state_.graph.nodes[node].inputs)
+      for (const Source& s : sources)
+        if (const auto* from = std::get_if<PortRef>(&s)) f(*from);
+  }
+
+  void announce_uses() {
+    for (const Step& s : state_.plan.steps) {
+      for_each_use(s, [&](PortRef p) { state_.announce_use(p); });
+      if (s.kind == Step::Kind::pass)
+        for (const std::size_t n : state_.plan.passes[s.index].nodes) state_.announce_ready_use(n);
+    }
+    for (const PortRef p : state_.options.demand.ports) state_.announce_use(p);
+  }
+
+  void end_uses(const Step& s) {
+    for_each_use(s, [&](PortRef p) { state_.end_use(p); });
+    if (s.kind == Step::Kind::pass)
+      for (const std::size_t n : state_.plan.passes[s.index].nodes) state_.end_ready_use(n);
+  }
+
+  // ----- scheduling
+
+  void run_steps() {
+    waiting_ = std::vector<std::atomic<std::size_t>>(state_.plan.steps.size());
+    std::vector<std::size_t> ready;
+    for (std::size_t i = 0; i < waiting_.size(); ++i) {
+      waiting_[i] = state_.plan.steps[i].waits_for;
+      if (waiting_[i] == 0) ready.push_back(i);
+    }
+    tbb::task_group group;
+    for (std::size_t i = 1; i < ready.size(); ++i) group.run([this, &group, s = ready[i]] { run_chain(s, group); });
+    if (!ready.empty()) run_chain(ready.front(), group);
+    group.wait();
+  }
+
+  // Runs a step and then the first step that it made ready, so that chains stay on one thread without a hand-over.
+  void run_chain(std::size_t step, tbb::task_group& group) {
+    constexpr auto none = static_cast<std::size_t>(-1);
+    while (step != none && !stopped_) {
+      const Step& s = state_.plan.steps[step];
+      run_guarded(s);
+      end_uses(s);
+      std::size_t next = none;
+      for (const std::size_t f : s.followers) {
+        if (waiting_[f].fetch_sub(1) != 1) continue;
+        if (next == none) next = f;
+        else group.run([this, &group, f] { run_chain(f, group); });
+      }
+      step = next;
+    }
+  }
+
+  void run_guarded(const Step& s) {
+    try {
+      if (state_.options.cancel != nullptr && state_.options.cancel->cancelled()) throw Cancelled();
+      if (s.kind == Step::Kind::pass) run_pass(state_, s.index);
+      else if (state_.graph.nodes[s.index].type->is_pixel()) prepare_node(s.index);
+      else run_node(s.index);
+    } catch (const Cancelled&) {
+      stop(End::cancelled);
+    } catch (const NodeError& e) {
+      fail(s, End::failed, e.code, e.what());
+    } catch (const WorldError& e) {
+      fail(s, End::world_failed, e.code, e.what());
+    } catch (const std::bad_alloc&) {
+      fail(s, End::world_failed, "out_of_memory", "no memory left");
+    } catch (const std::exception& e) {
+      fail(s, End::failed, "internal", fmt::format("this is a defect of frustum: {}", e.what()));
+    }
+  }
+
+  void stop(End end) {
+    End expected = End::done;
+    end_.compare_exchange_strong(expected, end);
+    stopped_ = true;
+  }
+
+  void fail(const Step& s, End end, const std::string& code, const std::string& message) {
+    const SourcePlace& place = place_of(s);
+    state_.problem({.code = code, .pointer = place.pointer, .message = message, .file = place.file, .line = place.line,
+                    .column = place.column},
+                   s.kind == Step::Kind::node ? s.index : state_.graph.nodes.size());
+    stop(end);
+  }
+
+  const SourcePlace& place_of(const Step& s) const {
+    if (s.kind == Step::Kind::node) return state_.graph.nodes[s.index].place;
+    const PixelPass& pass = state_.plan.passes[s.index];
+    if (!pass.outputs.empty()) return state_.graph.outputs[pass.outputs.front()].place;
+    return state_.graph.nodes[pass.nodes.back()].place;
+  }
+
+  // ----- nodes
+
+  Context context(std::size_t node) const {
+    Context ctx;
+    ctx.precision = state_.graph.nodes[node].precision;
+    ctx.seed = state_.graph.seed;
+    ctx.cancel = state_.options.cancel;
+    ctx.wanted_outputs = wanted_[node];
+    return ctx;
+  }
+
+  Buffer value(const Source& s) const {
+    const auto* from = std::get_if<PortRef>(&s);
+    return from != nullptr ? state_.buffer(*from) : std::get<Buffer>(s);
+  }
+
+  void run_node(std::size_t n) {
+    const GraphNode& node = state_.graph.nodes[n];
+    state_.observe([&](Observer& o) { o.started(node.id); });
+    const auto start = state_.now();
+    std::vector<std::vector<Buffer>> inputs(node.inputs.size());
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      for (const Source& s : node.inputs[i]) inputs[i].push_back(value(s));
+    Context ctx = context(n);
+    std::vector<Buffer> outputs = node.type->run(inputs, node.params.get(), ctx);
+    std::uint64_t bytes = 0;
+    for (std::size_t p = 0; p < outputs.size(); ++p) {
+      if (!outputs[p]) continue;
+      bytes += outputs[p].bytes();
+      check_health(n, p, outputs[p]);
+      if (state_.options.cache != nullptr)
+        state_.options.cache->insert(output_key(state_.keys[n], p), {{outputs[p]}, nullptr});
+      state_.publish({n, p}, std::move(outputs[p]));
+    }
+    state_.check_memory(0);
+    report(n, ctx, WorkDone::Kind::node, start, bytes);
+  }
+
+  void check_health(std::size_t n, std::size_t port, const Buffer& b) {
+    if (b.type().health == nullptr) return;
+    Health h = b.health();
+    if (h.finite()) return;
+    const GraphNode& node = state_.graph.nodes[n];
+    state_.culprit({node.id, node.type->outputs[port].name, h.first, {}, h}, n);
+  }
+
+  void prepare_node(std::size_t n) {
+    const GraphNode& node = state_.graph.nodes[n];
+    state_.observe([&](Observer& o) { o.started(node.id); });
+    const auto start = state_.now();
+    Context ctx = context(n);
+    MemoryCache* cache = state_.options.cache;
+    const Digest key = cache != nullptr ? Hasher().text("prepared").value(state_.keys[n]).value(ctx.wanted_outputs).done() : Digest{};
+    const auto found = cache != nullptr ? cache->find(key) : std::nullopt;
+    auto ready = found ? std::static_pointer_cast<const ReadyNode>(found->prepared) : prepare(n, ctx);
+    if (cache != nullptr && !found) cache->insert(key, {{}, ready});
+    state_.set_ready(n, std::move(ready));
+    report(n, ctx, WorkDone::Kind::prepare, start, 0, found ? CacheVerdict::hit : CacheVerdict::miss);
+  }
+
+  std::shared_ptr<const ReadyNode> prepare(std::size_t n, Context& ctx) {
+    const GraphNode& node = state_.graph.nodes[n];
+    std::vector<PreparedInput> inputs(node.inputs.size());
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      for (const Source& s : node.inputs[i]) inputs[i].buffers.push_back(value(s));
+      if (node.type->inputs[i].tiled && !inputs[i].buffers.empty()) inputs[i] = streaming(node.inputs[i].front());
+    }
+    auto ready = std::make_shared<ReadyNode>();
+    ready->node = node.type->prepare(inputs, node.params.get(), ctx);
+    for (const PreparedInput& in : inputs)
+      ready->planes_read.push_back(in.tiled.planes_read ? *in.tiled.planes_read : std::vector<bool>());
+    return ready;
+  }
+
+  // What a tiled input sees at preparation: the frame of the node that will stream, or of pixels that are whole.
+  PreparedInput streaming(const Source& source) const {
+    PreparedInput in;
+    const Buffer whole = value(source);
+    if (whole) {
+      in.tiled.frame = std::make_shared<const Frame>(whole.type().raster(whole.data()).frame());
+    } else {
+      const PortRef from = std::get<PortRef>(source);
+      in.tiled.frame = state_.ready(from.node)->node.frames[from.port];
+    }
+    in.tiled.planes_read = std::make_shared<std::vector<bool>>(in.tiled.frame->planes.size(), false);
+    return in;
+  }
+
+  void report(std::size_t n, const Context& ctx, WorkDone::Kind kind, std::chrono::nanoseconds start, std::uint64_t bytes,
+              CacheVerdict verdict = CacheVerdict::miss) {
+    const GraphNode& node = state_.graph.nodes[n];
+    for (const auto& [code, message] : ctx.warnings()) {
+      state_.problem({.code = code, .severity = Severity::warning, .pointer = node.place.pointer, .message = message,
+                      .file = node.place.file, .line = node.place.line, .column = node.place.column},
+                     n);
+      state_.observe([&](Observer& o) { o.warned(node.id, code, message); });
+    }
+    state_.observe([&](Observer& o) {
+      o.done({kind, {node.id}, start, state_.now() - start, bytes, state_.options.cache != nullptr ? verdict : CacheVerdict::off,
+              std::max(0, tbb::this_task_arena::current_thread_index()), ctx.counters()});
+    });
+  }
+
+  // ----- the end
+
+  RunResult result() {
+    RunResult r;
+    r.end = end_;
+    state_.take_results(r);
+    if (r.end == End::done)
+      for (const std::size_t o : state_.options.demand.outputs) r.files.push_back(output_path(state_.graph.outputs[o], state_.options));
+    return r;
+  }
+
+  RunState state_;
+  std::vector<std::atomic<std::size_t>> waiting_;
+  std::vector<std::uint64_t> wanted_;
+  std::atomic<End> end_{End::done};
+  std::atomic<bool> stopped_{false};
+};
+
+}  // namespace
+
+std::string_view name_of(CacheVerdict v) {
+  switch (v) {
+    case CacheVerdict::off: return "off";
+    case CacheVerdict::miss: return "miss";
+    case CacheVerdict::hit: return "hit";
+  }
+  return "";
+}
+
+std::string output_path(const GraphOutput& output, const RunOptions& options) {
+  std::string name = output.file;
+  const std::string mark = "{frame}";
+  if (const auto at = name.find(mark); at != std::string::npos)
+    name.replace(at, mark.size(), fmt::format("{:04}", options.frame.value_or(0)));
+  return (std::filesystem::path(options.out_folder) / name).string();
+}
+
+RunResult run_graph(const Graph& graph, const RunOptions& options) {
+  const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
+  // More threads than processors are allowed: results do not depend on it, and tests show that.
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  return arena.execute([&] { return Runner(graph, options).run(); });
+}
+
+}  // namespace frustum

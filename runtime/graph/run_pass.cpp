@@ -1,0 +1,295 @@
+#include "runtime/graph/keys.h"
+#include "runtime/graph/pixel_run.h"
+#include "runtime/graph/run_state.h"
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <map>
+
+namespace frustum {
+namespace {
+
+// One pass being run: the operations, what is read from memory, and who wants the pixels.
+class Pass {
+ public:
+  Pass(RunState& state, const PixelPass& pass) : state_(state), graph_(state.graph), pass_(pass) {}
+
+  void run() {
+    build_ops();
+    find_roots();
+    cut_where_margins_are_wide();
+    open_sinks();
+    const int edge = fit_memory();
+    const auto start = state_.now();
+    const PixelOutcome outcome = walk(edge);
+    for (auto& sink : sinks_) sink->finish();
+    publish();
+    report(outcome, start);
+  }
+
+ private:
+  // ----- building
+
+  void build_ops() {
+    for (const std::size_t n : pass_.nodes) {
+      const GraphNode& node = graph_.nodes[n];
+      const auto ready = state_.ready(n);
+      TileOp op{.type = node.type, .prepared = {ready, &ready->node}, .inputs = {}, .planes_read = {}};
+      for (const auto& frame : ready->node.frames) op.planes_read.emplace_back(frame->planes.size(), false);
+      for (std::size_t i = 0; i < node.inputs.size(); ++i) op.inputs.push_back(input(node, i, ready->planes_read[i]));
+      op_of_[n] = ops_.size();
+      ops_.push_back(std::move(op));
+    }
+  }
+
+  TileInput input(const GraphNode& node, std::size_t i, const std::vector<bool>& planes_read) {
+    TileInput in;
+    if (!node.type->inputs[i].tiled || node.inputs[i].empty()) return in;
+    const Source& source = node.inputs[i].front();
+    const auto* from = std::get_if<PortRef>(&source);
+    const Buffer whole = from != nullptr ? state_.buffer(*from) : std::get<Buffer>(source);
+    if (whole) {
+      in.whole = whole.type().raster(whole.data());
+    } else {
+      in.op = op_of_.at(from->node);
+      in.port = from->port;
+      auto& read = ops_[*in.op].planes_read[in.port];
+      for (std::size_t p = 0; p < read.size(); ++p)
+        if (planes_read[p]) read[p] = true;
+    }
+    return in;
+  }
+
+  std::size_t add_root(PortRef port) {
+    const std::size_t op = op_of_.at(port.node);
+    ops_[op].planes_read[port.port].assign(ops_[op].planes_read[port.port].size(), true);
+    roots_.push_back({op, port.port});
+    return roots_.size() - 1;
+  }
+
+  const Frame& frame(const TileRoot& r) const { return *ops_[r.op].prepared->frames[r.port]; }
+
+  Rect cut_to_region(Rect r) const { return state_.options.region ? intersection(r, *state_.options.region) : r; }
+
+  void find_roots() {
+    for (const PixelPass::Root& root : pass_.roots) {
+      add_root(root.port);
+      Frame f = frame(roots_.back());
+      if (root.why == Whole::demanded) f.window = cut_to_region(f.window);
+      area_ = hull(area_, f.window);
+      state_.check_memory(raster_bytes(f));
+      whole_.emplace_back(Raster(std::move(f)));
+    }
+    for (const std::size_t o : pass_.outputs) {
+      SinkJob job;
+      for (const OutputLayer& layer : graph_.outputs[o].layers) {
+        const Buffer whole = state_.buffer(layer.from);
+        if (whole) {
+          if (!whole.type().is_pixels())
+            throw NodeError("not_pixels", fmt::format("output '{}': {} is no picture", graph_.outputs[o].name,
+                                                      graph_.name(layer.from)));
+          job.layers.push_back({whole.type().raster(whole.data())});
+        } else {
+          job.layers.push_back({add_root(layer.from)});
+          whole_.emplace_back(std::nullopt);
+        }
+        area_ = hull(area_, cut_to_region(layer_frame(job.layers.back()).window));
+      }
+      jobs_.push_back(std::move(job));
+    }
+  }
+
+  const Frame& layer_frame(const SinkSource& s) const {
+    const auto* root = std::get_if<std::size_t>(&s.from);
+    return root != nullptr ? frame(roots_[*root]) : std::get<Raster>(s.from).frame();
+  }
+
+  static std::uint64_t raster_bytes(const Frame& f) {
+    return f.bytes_per_pixel() * static_cast<std::uint64_t>(padded_row(f.window.width())) *
+           static_cast<std::uint64_t>(f.window.height());
+  }
+
+  // A wide filter would make every tile recompute more than half again of what feeds it: that is made whole first.
+  void cut_where_margins_are_wide() {
+    if (state_.options.tile_edge != 0) return;
+    for (;;) {
+      const TileProgram program(ops_, roots_);
+      const int edge = program.choose_edge();
+      const auto estimate = program.estimate(edge);
+      if (!estimate.worst || estimate.area_ratio <= 1.5 || small_picture(edge)) return;
+      make_whole_early(*estimate.worst);
+    }
+  }
+
+  // A picture that is hardly more than one tile recomputes nothing.
+  bool small_picture(int edge) const { return area_.width() <= 2 * edge && area_.height() <= 2 * edge; }
+
+  void make_whole_early(std::size_t op) {
+    std::vector<TileRoot> roots;
+    PixelJob job;
+    for (std::size_t port = 0; port < ops_[op].planes_read.size(); ++port) {
+      auto& read = ops_[op].planes_read[port];
+      if (std::find(read.begin(), read.end(), true) == read.end()) continue;
+      read.assign(read.size(), true);
+      roots.push_back({op, port});
+      Frame f = frame(roots.back());
+      job.region = hull(job.region, f.window);
+      state_.check_memory(raster_bytes(f));
+      job.whole.emplace_back(Raster(std::move(f)));
+      early_bytes_ += job.whole.back()->bytes();
+      state_.ledger.add_bytes(job.whole.back()->bytes());
+    }
+    // The operations up to this one; those that feed others only fill nothing, since nobody asks them.
+    const std::vector<TileOp> upto(ops_.begin(), ops_.begin() + static_cast<std::ptrdiff_t>(op) + 1);
+    const TileProgram program(upto, roots);
+    job.program = &program;
+    job.cancel = state_.options.cancel;
+    early_.push_back(run_pixels(job).costs);
+    for (TileOp& later : ops_)
+      for (TileInput& in : later.inputs)
+        for (std::size_t r = 0; r < roots.size(); ++r)
+          if (in.op == op && in.port == roots[r].port) {
+            in.op.reset();
+            in.whole = job.whole[r];
+          }
+  }
+
+  // ----- sinks
+
+  void open_sinks() {
+    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+      const GraphOutput& output = graph_.outputs[pass_.outputs[i]];
+      SinkRequest request;
+      for (std::size_t l = 0; l < output.layers.size(); ++l) {
+        const Frame& f = layer_frame(jobs_[i].layers[l]);
+        request.display_window = hull(request.display_window, f.window);
+        request.layers.push_back({output.layers[l].name, sink_frame(f, {})});
+        if (f.samples() > 1 && f.find("R"))
+          state_.problem({.code = "sampled_output",
+                          .severity = Severity::warning,
+                          .pointer = output.place.pointer,
+                          .message = fmt::format("{} has {} samples a pixel; the file gets the most central one: "
+                                                 "supersample.resolve would filter them",
+                                                 graph_.name(output.layers[l].from), f.samples()),
+                          .file = output.place.file,
+                          .line = output.place.line,
+                          .column = output.place.column},
+                         output.layers[l].from.node);
+      }
+      request.region = cut_to_region(request.display_window);
+      for (SinkLayer& l : request.layers) l.frame.window = request.region;
+      request.path = output_path(output, state_.options);
+      request.bits = output.bits;
+      request.compression = output.compression;
+      request.metadata.emplace_back("Software", "frustum");
+      if (!graph_.title.empty()) request.metadata.emplace_back("ImageDescription", graph_.title);
+      if (request.region.empty())
+        throw NodeError("empty_region", fmt::format("output '{}' has no pixels in the region", output.name));
+      sinks_.push_back(state_.options.make_sink(request));
+      jobs_[i].sink = sinks_.back().get();
+    }
+  }
+
+  // ----- running
+
+  int fit_memory() {
+    if (state_.options.tile_edge != 0 || ops_.empty()) return state_.options.tile_edge;
+    const TileProgram program(ops_, roots_);
+    const int threads = tbb::this_task_arena::max_concurrency();
+    for (int edge = program.choose_edge();; edge /= 2) {
+      const std::uint64_t tiles = program.estimate(edge).live_bytes * static_cast<std::uint64_t>(threads);
+      std::uint64_t bands = 0;
+      for (std::size_t r = 0; r < roots_.size(); ++r)
+        if (!whole_[r])
+          bands += 4 * program.frame(roots_[r]).bytes_per_pixel() * static_cast<std::uint64_t>(area_.width()) *
+                   static_cast<std::uint64_t>(edge);
+      try {
+        state_.check_memory(tiles + bands + whole_bytes());
+        return edge;
+      } catch (const NodeError&) {
+        if (edge <= 16) throw;
+      }
+    }
+  }
+
+  std::uint64_t whole_bytes() const {
+    std::uint64_t sum = 0;
+    for (const auto& raster : whole_)
+      if (raster) sum += raster->bytes();
+    return sum;
+  }
+
+  PixelOutcome walk(int edge) {
+    const TileProgram program(ops_, roots_);
+    PixelJob job{.program = &program, .whole = whole_, .sinks = jobs_, .region = area_, .tile_edge = edge,
+                 .cancel = state_.options.cancel, .progress = {}};
+    if (state_.options.observer != nullptr)
+      job.progress = [this](double done) { state_.observe([&](Observer& o) { o.progress(last_node(), done); }); };
+    if (ops_.empty() && edge == 0) job.tile_edge = 64;
+    return run_pixels(job);
+  }
+
+  std::string last_node() const { return pass_.nodes.empty() ? std::string() : graph_.nodes[pass_.nodes.back()].id; }
+
+  void publish() {
+    for (std::size_t i = 0; i < pass_.roots.size(); ++i) {
+      const PortRef port = pass_.roots[i].port;
+      const bool complete = whole_[i]->frame().window == frame(roots_[i]).window;
+      const Buffer b = graph_.port(port).types.front()->from_raster(*whole_[i]);
+      if (complete && state_.options.cache != nullptr)
+        state_.options.cache->insert(output_key(state_.keys[port.node], port.port), {{b}, nullptr});
+      state_.publish(port, b);
+    }
+    state_.ledger.remove_bytes(early_bytes_);
+  }
+
+  // ----- reporting
+
+  void report(const PixelOutcome& outcome, std::chrono::nanoseconds start) {
+    std::vector<PixelNodeTime> times;
+    WorkDone done{.kind = WorkDone::Kind::pixels, .nodes = {}, .start = start, .time = state_.now() - start,
+                  .bytes = whole_bytes(), .cache = CacheVerdict::off,
+                  .thread = std::max(0, tbb::this_task_arena::current_thread_index()), .counters = {}};
+    for (std::size_t i = 0; i < ops_.size(); ++i) {
+      const std::string& id = graph_.nodes[pass_.nodes[i]].id;
+      PixelNodeTime t{id, outcome.costs.time[i], outcome.costs.pixels[i]};
+      for (const TileCosts& c : early_)
+        if (i < c.time.size()) t.time += c.time[i], t.pixels += c.pixels[i];
+      times.push_back(t);
+      done.nodes.push_back(id);
+    }
+    done.counters.emplace_back("tile_edge", static_cast<std::uint64_t>(std::max(0, outcome.tile_edge)));
+    done.counters.emplace_back("tile_bytes", outcome.worker_bytes);
+    state_.observe([&](Observer& o) {
+      o.done(done);
+      o.pixel_times(times);
+    });
+    if (outcome.culprit) {
+      const PixelCulprit& c = *outcome.culprit;
+      const std::size_t node = pass_.nodes[c.op];
+      state_.culprit({graph_.nodes[node].id, graph_.nodes[node].type->outputs[c.port].name, c.health.first, c.inputs, c.health},
+                     node);
+    }
+  }
+
+  RunState& state_;
+  const Graph& graph_;
+  const PixelPass& pass_;
+  std::vector<TileOp> ops_;
+  std::map<std::size_t, std::size_t> op_of_;  // by graph node
+  std::vector<TileRoot> roots_;
+  std::vector<std::optional<Raster>> whole_;  // one a root
+  std::vector<SinkJob> jobs_;
+  std::vector<std::unique_ptr<Sink>> sinks_;
+  std::vector<TileCosts> early_;
+  std::uint64_t early_bytes_ = 0;  // of rasters made whole by a cut
+  Rect area_;
+};
+
+}  // namespace
+
+void run_pass(RunState& state, std::size_t pass) { Pass(state, state.plan.passes[pass]).run(); }
+
+}  // namespace frustum

@@ -1,0 +1,65 @@
+#include "runtime/graph/run_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace frustum {
+
+RunState::RunState(const Graph& g, const RunOptions& o)
+    : graph(g), options(o), ready_(g.nodes.size()), ready_uses_(g.nodes.size()) {
+  buffers_.reserve(g.nodes.size());
+  uses_.reserve(g.nodes.size());
+  for (const GraphNode& n : g.nodes) {
+    buffers_.emplace_back(n.type->outputs.size());
+    uses_.emplace_back(n.type->outputs.size());
+  }
+}
+
+void RunState::publish(PortRef p, Buffer b) {
+  if (!b) return;
+  ledger.add(b);
+  buffers_[p.node][p.port] = std::move(b);
+}
+
+void RunState::end_use(PortRef p) {
+  if (uses_[p.node][p.port].fetch_sub(1) != 1) return;
+  Buffer& b = buffers_[p.node][p.port];
+  ledger.remove(b);
+  b = {};
+}
+
+void RunState::end_ready_use(std::size_t node) {
+  if (ready_uses_[node].fetch_sub(1) == 1) ready_[node].reset();
+}
+
+void RunState::problem(Diagnostic d, std::size_t order) {
+  const std::lock_guard lock(mutex_);
+  problems_.emplace_back(order, std::move(d));
+}
+
+void RunState::culprit(Culprit c, std::size_t order) {
+  const std::lock_guard lock(mutex_);
+  culprits_.emplace_back(order, std::move(c));
+}
+
+void RunState::check_memory(std::uint64_t further) const {
+  if (options.memory == 0) return;
+  const std::uint64_t live = ledger.live();
+  if (live + further <= options.memory) return;
+  const auto mib = [](std::uint64_t bytes) { return static_cast<double>(bytes) / (1 << 20); };
+  throw NodeError("memory", fmt::format("{:.1f} MiB are live and {:.1f} MiB more are needed, above the limit of {:.1f} MiB",
+                                        mib(live), mib(further), mib(options.memory)));
+}
+
+void RunState::take_results(RunResult& result) {
+  const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
+  std::stable_sort(problems_.begin(), problems_.end(), earlier);
+  for (auto& [order, d] : problems_) result.problems.add(std::move(d));
+  const auto first = std::min_element(culprits_.begin(), culprits_.end(), earlier);
+  if (first != culprits_.end()) result.culprit = std::move(first->second);
+  for (const PortRef p : options.demand.ports) result.buffers[p] = buffer(p);
+  result.peak_bytes = ledger.peak();
+}
+
+}  // namespace frustum

@@ -1,0 +1,70 @@
+// What a run knows while it runs: published buffers, prepared pixel nodes, problems. Used by run.cpp and run_pass.cpp.
+#pragma once
+
+#include "runtime/graph/ledger.h"
+#include "runtime/graph/run.h"
+
+#include <atomic>
+#include <mutex>
+
+namespace frustum {
+
+// A prepared pixel node and the planes of its inputs that it reads. Kept in the cache as it is.
+struct ReadyNode {
+  PreparedNode node;
+  std::vector<std::vector<bool>> planes_read;  // one an input; empty for whole inputs
+};
+
+class RunState {
+ public:
+  RunState(const Graph& graph, const RunOptions& options);
+
+  const Graph& graph;
+  const RunOptions& options;
+  Plan plan;
+  std::vector<Digest> keys;  // empty where there is no cache
+  Ledger ledger;
+
+  // ----- published results
+  Buffer buffer(PortRef p) const { return buffers_[p.node][p.port]; }  // empty where not there (yet, or any more)
+  void publish(PortRef p, Buffer b);
+  std::shared_ptr<const ReadyNode> ready(std::size_t node) const { return ready_[node]; }
+  void set_ready(std::size_t node, std::shared_ptr<const ReadyNode> r) { ready_[node] = std::move(r); }
+
+  // A step that had announced to use the port is over; after the last one the buffer is freed.
+  void announce_use(PortRef p) { ++uses_[p.node][p.port]; }
+  void end_use(PortRef p);
+  void announce_ready_use(std::size_t node) { ++ready_uses_[node]; }
+  void end_ready_use(std::size_t node);
+
+  // ----- reports, from any thread
+  void problem(Diagnostic d, std::size_t order);
+  void culprit(Culprit c, std::size_t order);
+  void check_memory(std::uint64_t further) const;  // throws NodeError("memory") over the limit
+
+  template <class F>
+  void observe(F&& f) {
+    if (options.observer == nullptr) return;
+    const std::lock_guard lock(observer_mutex_);
+    f(*options.observer);
+  }
+  std::chrono::nanoseconds now() const { return std::chrono::steady_clock::now() - start_; }
+
+  void take_results(RunResult& result);
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::vector<std::vector<Buffer>> buffers_;
+  std::vector<std::shared_ptr<const ReadyNode>> ready_;
+  std::vector<std::vector<std::atomic<int>>> uses_;
+  std::vector<std::atomic<int>> ready_uses_;
+
+  std::mutex mutex_, observer_mutex_;
+  std::vector<std::pair<std::size_t, Diagnostic>> problems_;
+  std::vector<std::pair<std::size_t, Culprit>> culprits_;
+};
+
+// run_pass.cpp: walks the tiles of one pass of the plan, makes its roots whole and writes its outputs.
+void run_pass(RunState&, std::size_t pass);
+
+}  // namespace frustum

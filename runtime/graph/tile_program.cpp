@@ -1,0 +1,228 @@
+#include "runtime/graph/tile_program.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+
+namespace frustum {
+namespace {
+
+constexpr std::size_t alignment = 64;
+constexpr std::size_t cache_budget = std::size_t{1} << 20;  // a core's share of L2 on the processors of the last decade
+constexpr double worst_area_ratio = 1.5;
+
+std::size_t aligned(std::size_t n) { return (n + alignment - 1) / alignment * alignment; }
+
+bool any(const std::vector<bool>& v) { return std::find(v.begin(), v.end(), true) != v.end(); }
+
+// Bytes of the planes that somebody reads, for a rectangle of this size.
+std::size_t tile_bytes(const Frame& f, const std::vector<bool>& read, Rect r) {
+  const auto values = static_cast<std::size_t>(padded_row(r.width())) * static_cast<std::size_t>(r.height()) *
+                      static_cast<std::size_t>(f.samples());
+  std::size_t sum = 0;
+  for (std::size_t p = 0; p < f.planes.size(); ++p)
+    if (read[p]) sum += aligned(values * bytes_of(f.planes[p].kind));
+  return sum;
+}
+
+}  // namespace
+
+// ----- memory
+
+void TileMemory::grow(std::size_t bytes) {
+  const std::size_t size = std::max(aligned(bytes), 2 * size_);
+  auto* p = static_cast<std::byte*>(std::aligned_alloc(alignment, size));
+  if (p == nullptr) throw std::bad_alloc();
+  // Tiles in flight keep pointing into the old block, which lives until everything is given back.
+  if (block_) retired_.push_back(std::move(block_));
+  block_ = {p, [](void* q) { std::free(q); }};
+  size_ = size;
+  pieces_ = {{0, size, false}};
+}
+
+std::byte* TileMemory::take(std::size_t bytes) {
+  bytes = std::max(aligned(bytes), alignment);
+  in_use_ += bytes;
+  peak_ = std::max(peak_, in_use_);
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (pieces_[i].used || pieces_[i].size < bytes) continue;
+      const Piece rest{pieces_[i].offset + bytes, pieces_[i].size - bytes, false};
+      pieces_[i] = {pieces_[i].offset, bytes, true};
+      if (rest.size != 0) pieces_.insert(pieces_.begin() + static_cast<std::ptrdiff_t>(i) + 1, rest);
+      return block_.get() + pieces_[i].offset;
+    }
+    grow(in_use_);
+  }
+  throw std::bad_alloc();
+}
+
+void TileMemory::give_back(std::byte* p) {
+  if (p < block_.get() || p >= block_.get() + size_) return;  // of a retired block: freed by clear()
+  const auto offset = static_cast<std::size_t>(p - block_.get());
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    if (pieces_[i].offset != offset) continue;
+    pieces_[i].used = false;
+    in_use_ -= std::min(in_use_, pieces_[i].size);
+    if (i + 1 < pieces_.size() && !pieces_[i + 1].used) {
+      pieces_[i].size += pieces_[i + 1].size;
+      pieces_.erase(pieces_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
+    if (i > 0 && !pieces_[i - 1].used) {
+      pieces_[i - 1].size += pieces_[i].size;
+      pieces_.erase(pieces_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    return;
+  }
+}
+
+void TileMemory::clear() {
+  retired_.clear();
+  in_use_ = 0;
+  if (block_) pieces_ = {{0, size_, false}};
+}
+
+// ----- program
+
+TileProgram::TileProgram(std::vector<TileOp> ops, std::vector<TileRoot> roots)
+    : ops_(std::move(ops)), roots_(std::move(roots)), last_reader_(ops_.size()) {
+  for (std::size_t i = 0; i < ops_.size(); ++i) {
+    last_reader_[i] = i;
+    for (const TileInput& in : ops_[i].inputs)
+      if (in.op) last_reader_[*in.op] = i;
+  }
+  for (const TileRoot& r : roots_) last_reader_[r.op] = ops_.size();
+}
+
+std::vector<Rect> TileProgram::rectangles(std::span<const Rect> targets) const {
+  std::vector<Rect> rects(ops_.size());
+  for (std::size_t i = 0; i < roots_.size(); ++i) rects[roots_[i].op] = hull(rects[roots_[i].op], targets[i]);
+  for (std::size_t i = ops_.size(); i-- > 0;) {
+    if (rects[i].empty()) continue;
+    const TileOp& op = ops_[i];
+    for (std::size_t k = 0; k < op.inputs.size(); ++k) {
+      if (!op.inputs[k].op) continue;
+      const TileOp& from = ops_[*op.inputs[k].op];
+      const Rect read = op.type->reads(op.prepared->state.get(), k, rects[i]);
+      Rect& r = rects[*op.inputs[k].op];
+      r = hull(r, intersection(read, from.prepared->frames[op.inputs[k].port]->window));
+    }
+  }
+  return rects;
+}
+
+// The tiles of one call of run(): plane pointers and views by operation and output.
+struct TileProgram::Live {
+  struct Output {
+    std::vector<std::byte*> planes;
+    Tile tile;
+  };
+  std::vector<std::vector<Output>> outputs;
+};
+
+// Where an output's tile lies: in the target itself for a root that is filled exactly, else in the worker's memory.
+Tile TileProgram::place(std::size_t op, std::size_t port, Rect rect, std::span<const Tile> targets, TileMemory& memory,
+                        std::vector<std::byte*>& planes) const {
+  for (std::size_t r = 0; r < roots_.size(); ++r)
+    if (roots_[r].op == op && roots_[r].port == port && !targets[r].empty() && targets[r].rect() == rect) return targets[r];
+  const Frame& frame = *ops_[op].prepared->frames[port];
+  const std::ptrdiff_t row = padded_row(rect.width());
+  for (std::size_t p = 0; p < frame.planes.size(); ++p) {
+    const auto bytes = static_cast<std::size_t>(row) * static_cast<std::size_t>(rect.height()) *
+                       static_cast<std::size_t>(frame.samples()) * bytes_of(frame.planes[p].kind);
+    planes.push_back(ops_[op].planes_read[port][p] ? memory.take(bytes) : nullptr);
+  }
+  return {&frame, rect, rect, row, row * rect.height(), planes};
+}
+
+void TileProgram::run(std::span<const Tile> targets, TileWorker& worker, const After& after) const {
+  using Clock = std::chrono::steady_clock;
+  worker.memory.clear();
+  worker.costs.time.resize(ops_.size());
+  worker.costs.pixels.resize(ops_.size());
+
+  std::vector<Rect> wanted;
+  for (const Tile& t : targets) wanted.push_back(t.empty() ? Rect{} : t.rect());
+  const std::vector<Rect> rects = rectangles(wanted);
+
+  Live live;
+  live.outputs.resize(ops_.size());
+  std::vector<Tile> in, out;
+  for (std::size_t i = 0; i < ops_.size(); ++i) {
+    const TileOp& op = ops_[i];
+    const Rect rect = rects[i];
+    auto& outputs = live.outputs[i];
+    outputs.resize(op.planes_read.size());
+    if (rect.empty()) continue;
+
+    out.clear();
+    for (std::size_t o = 0; o < outputs.size(); ++o) {
+      if (any(op.planes_read[o])) outputs[o].tile = place(i, o, rect, targets, worker.memory, outputs[o].planes);
+      out.push_back(outputs[o].tile);
+    }
+    in.clear();
+    for (const TileInput& input : op.inputs) {
+      if (input.op) in.push_back(live.outputs[*input.op][input.port].tile);
+      else if (input.whole) in.push_back(input.whole->view());
+      else in.emplace_back();
+    }
+
+    const auto start = Clock::now();
+    worker.arena.reset();
+    op.type->tile(op.prepared->state.get(), in, out, worker.arena);
+    worker.costs.time[i] += Clock::now() - start;
+    worker.costs.pixels[i] += static_cast<std::uint64_t>(rect.area());
+    if (after) after(i, in, out);
+
+    for (std::size_t earlier = 0; earlier <= i; ++earlier) {
+      if (last_reader_[earlier] != i) continue;
+      for (const auto& o : live.outputs[earlier])
+        for (std::byte* p : o.planes)
+          if (p != nullptr) worker.memory.give_back(p);
+    }
+  }
+  for (std::size_t r = 0; r < roots_.size(); ++r) {
+    if (wanted[r].empty()) continue;
+    const Tile& made = live.outputs[roots_[r].op][roots_[r].port].tile;
+    if (!made.shares_storage(targets[r])) copy(made, targets[r]);
+  }
+}
+
+TileProgram::Estimate TileProgram::estimate(int edge) const {
+  std::vector<Rect> targets;
+  for (const TileRoot& r : roots_) {
+    const Rect w = frame(r).window;
+    const int x = (w.x0 + w.x1 - edge) / 2, y = (w.y0 + w.y1 - edge) / 2;
+    targets.push_back(intersection({x, y, x + edge, y + edge}, w));
+  }
+  const std::vector<Rect> rects = rectangles(targets);
+  double asked = 1;
+  for (const Rect& t : targets) asked = std::max(asked, static_cast<double>(t.area()));
+
+  Estimate e;
+  std::vector<std::size_t> bytes(ops_.size());
+  std::size_t live = 0;
+  for (std::size_t i = 0; i < ops_.size(); ++i) {
+    for (std::size_t o = 0; o < ops_[i].planes_read.size(); ++o)
+      bytes[i] += tile_bytes(*ops_[i].prepared->frames[o], ops_[i].planes_read[o], rects[i]);
+    live += bytes[i];
+    e.live_bytes = std::max(e.live_bytes, live);
+    for (std::size_t earlier = 0; earlier <= i; ++earlier)
+      if (last_reader_[earlier] == i) live -= bytes[earlier];
+    const double ratio = static_cast<double>(rects[i].area()) / asked;
+    if (ratio > e.area_ratio) {
+      e.area_ratio = ratio;
+      e.worst = i;
+    }
+  }
+  return e;
+}
+
+int TileProgram::choose_edge() const {
+  int edge = 128;
+  while (edge > 16 && estimate(edge).live_bytes > cache_budget) edge /= 2;
+  while (edge < 128 && estimate(edge).area_ratio > worst_area_ratio) edge *= 2;
+  return edge;
+}
+
+}  // namespace frustum
