@@ -3,12 +3,13 @@
 
 #include "runtime/core/buffer.h"
 
+#include <functional>
 #include <utility>
 
 namespace frustum {
 
 // `Ops` has the static functions bytes(const T&), hash(const T&, Hasher&), health(const T&), summary(const T&), and
-// may have table(const T&, first, count), raster(const T&), from_raster(Raster) and from_json(const Json&, ParamReader&).
+// may have table(const T&, first, count), parts(const T&, visit), raster(const T&), from_raster(Raster) and from_json(const Json&, ParamReader&).
 template <class T, class Ops>
 BufferType make_buffer_type(std::string_view name, std::string_view doc, std::string_view color) {
   BufferType t{.name = name, .doc = doc, .color = color};
@@ -19,6 +20,10 @@ BufferType make_buffer_type(std::string_view name, std::string_view doc, std::st
   if constexpr (requires { &Ops::table; })
     t.table = [](const void* p, std::size_t first, std::size_t count) {
       return Ops::table(*static_cast<const T*>(p), first, count);
+    };
+  if constexpr (requires { &Ops::parts; })
+    t.parts = [](const void* p, const std::function<void(const void*, std::size_t)>& visit) {
+      Ops::parts(*static_cast<const T*>(p), visit);
     };
   if constexpr (requires { &Ops::raster; })
     t.raster = [](const void* p) -> const Raster& { return Ops::raster(*static_cast<const T*>(p)); };

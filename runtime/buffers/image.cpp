@@ -3,6 +3,7 @@
 #include "runtime/buffers/buffer_ops.h"
 #include "runtime/buffers/numbers.h"
 #include "runtime/buffers/pattern.h"
+#include "runtime/core/health.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -34,31 +35,16 @@ std::span<const T> row_of(const Tile& t, int plane, int sample, int y) {
 
 int plane_count(const Raster& r) { return static_cast<int>(r.frame().planes.size()); }
 
-// Scans the rows of one plane in parallel blocks; the first place is that of the lowest sample, then row.
-Health plane_health(const Raster& r, int plane) {
-  const Plane& p = r.frame().planes[static_cast<std::size_t>(plane)];
-  const Tile t = r.view();
-  const Rect w = t.rect();
-  const auto values = static_cast<std::size_t>(w.area()) * static_cast<std::size_t>(t.samples());
-  Health sum{.values = values};
-  if (p.kind == PlaneKind::u32 || values == 0) return sum;
-  const int rows = t.samples() * w.height();
-  std::vector<Health> found(static_cast<std::size_t>(rows));
-  tbb::parallel_for(tbb::blocked_range<int>(0, rows, 1 + (1 << 17) / w.width()), [&](const auto& range) {
-    for (int i = range.begin(); i < range.end(); ++i) {
-      const int sample = i / w.height(), y = w.y0 + i % w.height();
-      const Scan s = with_type(p.kind, [&]<class T>(const T*) {
-        if constexpr (std::is_floating_point_v<T>) return scan(row_of<T>(t, plane, sample, y));
-        else return Scan{};
-      });
-      if (!s.first) continue;
-      found[static_cast<std::size_t>(i)] = to_health(s, 0, [&](std::size_t x) {
-        const std::string of_sample = t.samples() > 1 ? fmt::format(", sample {}", sample) : "";
-        return fmt::format("plane {}, pixel {},{}{}", p.name, w.x0 + static_cast<int>(x), y, of_sample);
-      });
-    }
+// Bands of 64 rows in parallel, joined from the top: the first place is in the topmost band that has one.
+Health raster_health(const Raster& r) {
+  const Rect w = r.frame().window;
+  std::vector<Health> bands(static_cast<std::size_t>((w.height() + 63) / 64));
+  tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t i) {
+    const int y = w.y0 + static_cast<int>(i) * 64;
+    bands[i] = health_of(r.view({w.x0, y, w.x1, std::min(y + 64, w.y1)}));
   });
-  for (const Health& h : found) sum.add(h);
+  Health sum;
+  for (const Health& h : bands) sum.add(h);
   return sum;
 }
 
@@ -105,6 +91,10 @@ template <class Kind>
 struct Ops {
   static std::size_t bytes(const Kind& k) { return sizeof k + k.raster.bytes(); }
   static const Raster& raster(const Kind& k) { return k.raster; }
+  // The frame lies in the storage that copies of a raster share, so its address stands for it.
+  static void parts(const Kind& k, const std::function<void(const void*, std::size_t)>& visit) {
+    visit(&k.raster.frame(), k.raster.bytes());
+  }
   static Buffer from_raster(Raster r) { return std::make_shared<const Kind>(Kind{std::move(r)}); }
 
   static void hash(const Kind& k, Hasher& h) {
@@ -116,11 +106,7 @@ struct Ops {
     for (const Plane& p : f.planes) h.text(p.name).value(p.kind);
     for (int p = 0; p < plane_count(k.raster); ++p) hash_plane(k.raster, p, h);
   }
-  static Health health(const Kind& k) {
-    Health sum;
-    for (int p = 0; p < plane_count(k.raster); ++p) sum.add(plane_health(k.raster, p));
-    return sum;
-  }
+  static Health health(const Kind& k) { return raster_health(k.raster); }
   static Json summary(const Kind& k) {
     const Frame& f = k.raster.frame();
     Json planes = Json::array();

@@ -99,6 +99,9 @@ struct Ops {
     for (const auto& c : m.columns) sum += c->bytes();
     return sum;
   }
+  static void parts(const Mesh& m, const std::function<void(const void*, std::size_t)>& visit) {
+    for (const auto& c : m.columns) visit(c->data(), c->bytes());
+  }
   static void hash(const Mesh& m, Hasher& h) {
     h.value(m.columns.size());
     for (const auto& c : m.columns) c->hash(h);

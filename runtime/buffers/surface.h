@@ -14,6 +14,7 @@ namespace frustum {
 
 // Bicubic patches. Patch p has control point control[p][4 i + j] for row i (u) and column j (v).
 // Patches that share boundary control points (by index) share that boundary exactly.
+// The front of a patch is the side that dP/du x dP/dv points to.
 struct Surface {
   std::vector<glm::dvec3> points;
   std::vector<std::array<std::uint32_t, 16>> patches;

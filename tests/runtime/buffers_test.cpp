@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace frustum {
 namespace {
@@ -188,10 +189,10 @@ TEST(Pixels, HealthNamesPlanePixelAndSample) {
   r.view().row<float>(0, 1, 7)[4] = nan;
   r.view().row<float>(0, 2, 5)[0] = -inf;
   const Health h = buffer(Visibility{r}).health();
-  EXPECT_EQ(h.values, 2u * 3 * 20);
+  EXPECT_EQ(h.values, 3u * 20) << "ids are not counted";
   EXPECT_EQ(h.nan, 1u);
   EXPECT_EQ(h.negative_infinity, 1u);
-  EXPECT_EQ(h.first, "plane Z, pixel 2,7, sample 1");
+  EXPECT_EQ(h.first, "plane Z, sample 1, pixel 2,7");
 }
 
 TEST(Pixels, DigestLeavesThePaddingOut) {
@@ -223,6 +224,21 @@ TEST(Pixels, AnEmptyWindowIsHealthyAndHasNoRows) {
   EXPECT_TRUE(buffer(empty).health().finite());
   EXPECT_EQ(buffer_type<Image>().table(&empty, 0, 10)["total"], 0);
   EXPECT_EQ(buffer_type<Image>().summary(&empty)["planes"], Json::array());
+}
+
+std::size_t bytes_of_parts(const std::vector<Buffer>& buffers) {
+  std::map<const void*, std::size_t> parts;
+  for (const Buffer& b : buffers) b.type().parts(b.data(), [&](const void* p, std::size_t n) { parts[p] = n; });
+  std::size_t sum = 0;
+  for (const auto& [p, n] : parts) sum += n;
+  return sum;
+}
+
+TEST(Parts, SharedColumnsAndRastersCountOnce) {
+  const Mesh a = square(), b = a.with(Column::make<float>("heat", Domain::vertex, 4));
+  EXPECT_EQ(bytes_of_parts({buffer(a), buffer(b)}), 4u * 12 + 2 * 12 + 4 * 4);
+  const Raster r = two_planes(1, 0);
+  EXPECT_EQ(bytes_of_parts({buffer(Image{r}), buffer(Visibility{r})}), r.bytes());
 }
 
 TEST(Values, ReadLiteralsAndReportWhatIsNone) {
