@@ -12,8 +12,8 @@
 namespace frustum {
 
 struct Demand {
-  std::vector<PortRef> ports;         // whole buffers for the caller: inspections, --want NODE.PORT
-  std::vector<std::size_t> outputs;   // indices of Graph::outputs to write
+  std::vector<PortRef> ports = {};         // whole buffers for the caller: inspections, --want NODE.PORT
+  std::vector<std::size_t> outputs = {};   // indices of Graph::outputs to write
 };
 
 // Why a pixel port is held whole in memory instead of streaming.

@@ -13,10 +13,10 @@
 namespace frustum {
 
 struct RunOptions {
-  Demand demand;
-  std::optional<Rect> region;              // of every pixel root; same bytes as that part of the whole
+  Demand demand = {};
+  std::optional<Rect> region = {};         // of every pixel root; same bytes as that part of the whole
   std::string out_folder = "out";
-  MakeSink make_sink;                      // required where demand.outputs is not empty
+  MakeSink make_sink = {};                      // required where demand.outputs is not empty
   int threads = 0;                         // 0: all processors
   int tile_edge = 0;                       // 0: chosen so that live planes stay within 1 MB; -1: one tile, the whole frame
   bool fuse = true;
@@ -24,7 +24,7 @@ struct RunOptions {
   const CancelFlag* cancel = nullptr;
   Observer* observer = nullptr;
   MemoryCache* cache = nullptr;            // null: nothing is kept
-  std::optional<int> frame;                // replaces {frame} in output names
+  std::optional<int> frame = {};           // replaces {frame} in output names
 };
 
 struct Culprit {
