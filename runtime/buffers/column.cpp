@@ -6,6 +6,7 @@
 
 #include <array>
 #include <limits>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 
@@ -29,12 +30,18 @@ std::shared_ptr<void> aligned_storage(std::size_t rows, std::size_t row_bytes) {
 
 }  // namespace
 
+struct Column::HealthMemo {
+  std::once_flag once;
+  Health health;
+};
+
 std::string_view name_of(Domain d) { return domain_names[static_cast<std::size_t>(d)]; }
 std::string_view name_of(NumberKind k) { return kind_names[static_cast<std::size_t>(k)]; }
 
 Column::Column(std::string_view name, Domain domain, NumberKind kind, int width, std::size_t rows, Space space)
     : name_(name), domain_(domain), kind_(kind), width_(width), rows_(rows), space_(space),
-      data_(aligned_storage(rows, static_cast<std::size_t>(width) * bytes_of(kind))) {}
+      data_(aligned_storage(rows, static_cast<std::size_t>(width) * bytes_of(kind))),
+      health_(std::make_shared<HealthMemo>()) {}
 
 double Column::number(std::size_t row, int component) const {
   const std::size_t i = row * static_cast<std::size_t>(width_) + static_cast<std::size_t>(component);
@@ -55,6 +62,11 @@ Ref<Column> Column::renamed(std::string_view name, Space space) const {
 }
 
 Health Column::health() const {
+  std::call_once(health_->once, [this] { health_->health = count_health(); });
+  return health_->health;
+}
+
+Health Column::count_health() const {
   const std::size_t n = rows_ * static_cast<std::size_t>(width_);
   Scan found;
   if (kind_ == NumberKind::f32) found = scan(std::span(static_cast<const float*>(data_.get()), n));

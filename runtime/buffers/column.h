@@ -89,10 +89,13 @@ class Column {
   // The same storage under another name or in another space.
   Ref<Column> renamed(std::string_view name, Space space) const;
 
+  // Counted once for each storage: every mesh that shares the column asks again. Call it on published columns only.
   Health health() const;
   void hash(Hasher&) const;
 
  private:
+  struct HealthMemo;
+  Health count_health() const;
   void require(NumberKind, int width) const;
 
   std::string name_;
@@ -102,6 +105,7 @@ class Column {
   std::size_t rows_;
   Space space_;
   std::shared_ptr<void> data_;
+  std::shared_ptr<HealthMemo> health_;
 };
 
 // A real column in the precision R: itself, or widened from f32 to f64. Narrowing throws NodeError("narrowing"): it is
