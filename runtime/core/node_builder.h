@@ -12,7 +12,7 @@ template <class T>
 struct PortOf<Ref<T>> {
   static constexpr bool list = false, optional = false, tiled = false;
   static std::vector<const BufferType*> types() { return {&buffer_type<T>()}; }
-  static void set(Ref<T>& m, const PreparedInput& in) { m = in.buffers.at(0).as<T>(); }
+  static void set(Ref<T>& m, std::span<const Buffer> from, const TiledInput&) { m = from.front().as<T>(); }
   static Buffer get(const Ref<T>& m) { return m ? Buffer(m) : Buffer(); }
 };
 
@@ -20,22 +20,23 @@ template <class T>
 struct PortOf<Tiled<T>> {
   static constexpr bool list = false, optional = false, tiled = true;
   static std::vector<const BufferType*> types() { return {&buffer_type<T>()}; }
-  static void set(Tiled<T>& m, const PreparedInput& in) { m = Tiled<T>(in.tiled.frame, in.tiled.planes_read); }
+  static void set(Tiled<T>& m, std::span<const Buffer>, const TiledInput& in) { m = Tiled<T>(in.frame, in.planes_read); }
 };
 
 template <class T>
 struct PortOf<std::vector<Ref<T>>> : PortOf<Ref<T>> {
   static constexpr bool list = true;
-  static void set(std::vector<Ref<T>>& m, const PreparedInput& in) {
-    for (const Buffer& b : in.buffers) m.push_back(b.as<T>());
+  static void set(std::vector<Ref<T>>& m, std::span<const Buffer> from, const TiledInput&) {
+    m.reserve(from.size());
+    for (const Buffer& b : from) m.push_back(b.as<T>());
   }
 };
 
 template <class P>
 struct PortOf<std::optional<P>> : PortOf<P> {
   static constexpr bool optional = true;
-  static void set(std::optional<P>& m, const PreparedInput& in) {
-    if (!in.buffers.empty() || in.tiled.frame) PortOf<P>::set(m.emplace(), in);
+  static void set(std::optional<P>& m, std::span<const Buffer> from, const TiledInput& in) {
+    PortOf<P>::set(m.emplace(), from, in);
   }
   static Buffer get(const std::optional<P>& m) { return m ? PortOf<P>::get(*m) : Buffer(); }
 };
@@ -44,8 +45,8 @@ template <class... T>
 struct PortOf<std::variant<Ref<T>...>> {
   static constexpr bool list = false, optional = false, tiled = false;
   static std::vector<const BufferType*> types() { return {&buffer_type<T>()...}; }
-  static void set(std::variant<Ref<T>...>& m, const PreparedInput& in) {
-    const Buffer& b = in.buffers.at(0);
+  static void set(std::variant<Ref<T>...>& m, std::span<const Buffer> from, const TiledInput&) {
+    const Buffer& b = from.front();
     ((b.is<T>() ? void(m = b.as<T>()) : void()), ...);
   }
   static Buffer get(const std::variant<Ref<T>...>& m) {
@@ -73,7 +74,7 @@ std::size_t offset_in(M S::* member) {
 }
 
 template <class S>
-using SetPort = void (*)(S&, std::size_t offset, const PreparedInput&);
+using SetPort = void (*)(S&, std::size_t offset, std::span<const Buffer>, const TiledInput&);
 template <class S>
 using GetPort = Buffer (*)(const S&, std::size_t offset);
 
@@ -109,8 +110,8 @@ class NodeBuilder {
   template <class M>
   NodeBuilder& input(std::string_view name, M I::* member, std::string_view doc, PortOptions options = {}) {
     type_.inputs.push_back(port<I>(name, member, doc, options));
-    set_.push_back([](I& in, std::size_t at, const PreparedInput& value) {
-      detail::PortOf<M>::set(detail::member_at<M>(in, at), value);
+    set_.push_back([](I& in, std::size_t at, std::span<const Buffer> from, const TiledInput& tiled) {
+      detail::PortOf<M>::set(detail::member_at<M>(in, at), from, tiled);
     });
     return *this;
   }
@@ -151,26 +152,28 @@ class NodeBuilder {
 
   operator NodeType() {
     type_.params = detail::record_type(fields_.take());
-    const auto fill = [ports = type_.inputs, set = set_](std::span<const PreparedInput> values) {
-      I in{};
-      for (std::size_t i = 0; i < ports.size(); ++i)
-        if (!values[i].buffers.empty() || values[i].tiled.frame) set[i](in, ports[i].offset, values[i]);
-      return in;
+    // An input left out keeps its member's default.
+    const auto fill = [ports = type_.inputs, set = set_](I& in, std::size_t i, std::span<const Buffer> from,
+                                                         const TiledInput& tiled) {
+      if (!from.empty() || tiled.frame) set[i](in, ports[i].offset, from, tiled);
     };
     if (run_ != nullptr) {
       type_.run = [fill, run = run_, ports = type_.outputs, get = get_](std::span<const std::vector<Buffer>> inputs,
                                                                         const void* params, Context& ctx) {
-        std::vector<PreparedInput> values;
-        for (const auto& list : inputs) values.push_back({list, {}});
-        const O out = run(fill(values), *static_cast<const P*>(params), ctx);
+        I in{};
+        for (std::size_t i = 0; i < inputs.size(); ++i) fill(in, i, inputs[i], {});
+        const O out = run(in, *static_cast<const P*>(params), ctx);
         std::vector<Buffer> buffers;
+        buffers.reserve(ports.size());
         for (std::size_t i = 0; i < ports.size(); ++i) buffers.push_back(get[i](out, ports[i].offset));
         return buffers;
       };
     } else {
       type_.prepare = [fill, prepare = prepare_, ports = type_.outputs, frame = frame_](
                           std::span<const PreparedInput> inputs, const void* params, Context& ctx) {
-        auto [state, out] = prepare(fill(inputs), *static_cast<const P*>(params), ctx);
+        I in{};
+        for (std::size_t i = 0; i < inputs.size(); ++i) fill(in, i, inputs[i].buffers, inputs[i].tiled);
+        auto [state, out] = prepare(in, *static_cast<const P*>(params), ctx);
         PreparedNode made{std::move(state), {}};
         for (std::size_t i = 0; i < ports.size(); ++i) made.frames.push_back(frame[i](out, ports[i].offset));
         return made;

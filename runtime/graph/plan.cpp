@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <set>
 
 namespace frustum {
@@ -85,7 +84,7 @@ class Planner {
       if (!notes_[i].wanted) continue;
       for_each_link(i, [&](PortRef from, bool) {
         if (given(from)) return;
-        notes_[i].level = std::max(notes_[i].level, notes_[from.node].level + (whole_.contains(from) ? 1 : 0));
+        notes_[i].level = std::max(notes_[i].level, notes_[from.node].level + (!whole_.empty() && whole_.contains(from) ? 1 : 0));
       });
     }
   }
@@ -152,49 +151,63 @@ class Planner {
     }
   }
 
-  void order_steps() {
-    std::map<std::size_t, std::size_t> step_of_node;
-    std::map<PortRef, std::size_t> step_of_whole;
-    std::size_t next_pass = 0;
-    std::vector<std::set<std::size_t>> after;
-    const auto add = [&](Step step, std::set<std::size_t> waits) {
-      for (const std::size_t w : waits) plan_.steps[w].followers.push_back(plan_.steps.size());
-      step.waits_for = waits.size();
-      plan_.steps.push_back(std::move(step));
-      return plan_.steps.size() - 1;
-    };
-    const auto wait_for = [&](PortRef from, bool streams, std::set<std::size_t>& waits) {
-      if (given(from)) return;
-      const auto whole = step_of_whole.find(from);
-      if (whole != step_of_whole.end() && !streams) waits.insert(whole->second);
-      else waits.insert(step_of_node.at(from.node));
-    };
-    const auto add_pass = [&](std::size_t pass) {
-      std::set<std::size_t> waits;
-      const PixelPass& p = plan_.passes[pass];
-      for (const std::size_t n : p.nodes) {
-        waits.insert(step_of_node.at(n));
-        for_each_link(n, [&](PortRef from, bool) {
-          if (const auto w = step_of_whole.find(from); w != step_of_whole.end()) waits.insert(w->second);
-        });
-      }
-      for (const std::size_t o : p.outputs)
-        for (const OutputLayer& layer : graph_.outputs[o].layers) wait_for(layer.from, false, waits);
-      const std::size_t step = add({.kind = Step::Kind::pass, .index = pass}, std::move(waits));
-      for (const auto& root : p.roots) step_of_whole[root.port] = step;
-    };
-    // A pass can be placed once all nodes of its level are; nodes of the next level wait for it.
-    std::vector<std::size_t> order(plan_.nodes.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto level = [&](std::size_t i) { return notes_[plan_.nodes[i].node].level; };
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return level(a) < level(b); });
-    for (const std::size_t i : order) {
-      while (next_pass < groups_.size() && groups_[next_pass].level < level(i)) add_pass(next_pass++);
-      std::set<std::size_t> waits;
-      for_each_link(plan_.nodes[i].node, [&](PortRef from, bool streams) { wait_for(from, streams, waits); });
-      step_of_node[plan_.nodes[i].node] = add({.kind = Step::Kind::node, .index = plan_.nodes[i].node}, std::move(waits));
+  // ----- steps
+
+  static constexpr auto nowhere = static_cast<std::size_t>(-1);
+
+  // Adds a step that waits for others; `waits` may name one twice.
+  std::size_t add_step(Step step, std::vector<std::size_t>& waits) {
+    std::sort(waits.begin(), waits.end());
+    waits.erase(std::unique(waits.begin(), waits.end()), waits.end());
+    for (const std::size_t w : waits) plan_.steps[w].followers.push_back(plan_.steps.size());
+    step.waits_for = waits.size();
+    plan_.steps.push_back(std::move(step));
+    waits.clear();
+    return plan_.steps.size() - 1;
+  }
+
+  // The step that a reader of the port waits for: the pass that makes it whole, or the node itself.
+  void wait_for(PortRef from, bool streams) {
+    if (given(from)) return;
+    const auto whole = whole_.empty() ? step_of_whole_.end() : step_of_whole_.find(from);
+    if (whole != step_of_whole_.end() && !streams) waits_.push_back(whole->second);
+    else waits_.push_back(step_of_node_[from.node]);
+  }
+
+  void add_node_step(std::size_t node) {
+    for_each_link(node, [&](PortRef from, bool streams) { wait_for(from, streams); });
+    step_of_node_[node] = add_step({.kind = Step::Kind::node, .index = node}, waits_);
+  }
+
+  void add_pass_step(std::size_t pass) {
+    const PixelPass& p = plan_.passes[pass];
+    for (const std::size_t n : p.nodes) {
+      waits_.push_back(step_of_node_[n]);
+      for_each_link(n, [&](PortRef from, bool) {
+        if (const auto w = step_of_whole_.find(from); w != step_of_whole_.end()) waits_.push_back(w->second);
+      });
     }
-    while (next_pass < groups_.size()) add_pass(next_pass++);
+    for (const std::size_t o : p.outputs)
+      for (const OutputLayer& layer : graph_.outputs[o].layers) wait_for(layer.from, false);
+    const std::size_t step = add_step({.kind = Step::Kind::pass, .index = pass}, waits_);
+    for (const auto& root : p.roots) step_of_whole_[root.port] = step;
+  }
+
+  // A pass can be placed once all nodes of its level are; nodes of the next level wait for it.
+  void order_steps() {
+    step_of_node_.assign(graph_.nodes.size(), nowhere);
+    plan_.steps.reserve(plan_.nodes.size() + plan_.passes.size());
+    std::vector<std::size_t> order;
+    order.reserve(plan_.nodes.size());
+    for (const PlannedNode& n : plan_.nodes) order.push_back(n.node);
+    if (!groups_.empty())
+      std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return notes_[a].level < notes_[b].level; });
+    std::size_t next_pass = 0;
+    for (const std::size_t node : order) {
+      while (next_pass < groups_.size() && groups_[next_pass].level < notes_[node].level) add_pass_step(next_pass++);
+      add_node_step(node);
+    }
+    while (next_pass < groups_.size()) add_pass_step(next_pass++);
   }
 
   const Graph& graph_;
@@ -203,6 +216,9 @@ class Planner {
   std::vector<Note> notes_;
   std::map<PortRef, Whole> whole_;
   std::vector<Group> groups_;
+  std::vector<std::size_t> step_of_node_;  // nowhere: not planned
+  std::map<PortRef, std::size_t> step_of_whole_;
+  std::vector<std::size_t> waits_;         // of the step being added
   Plan plan_;
 };
 
