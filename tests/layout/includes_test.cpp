@@ -30,10 +30,12 @@ struct Layer {
 };
 
 // The first row that matches a file is its layer. Kernels include no runtime header and so stand below
-// everything; app alone sees the nodes, through the generated list.
+// everything; what a reader of nodes/io makes of a file is a buffer; app alone sees the nodes, through the
+// generated list (docs/decisions/0001-build.md).
 const std::vector<Layer>& layers() {
   static const std::vector<Layer> table = {
       {"nodes/kernels/", "", {"nodes/kernels/"}},
+      {"nodes/io/", ".h", {"nodes/kernels/", "runtime/buffers/"}},
       {"nodes/", ".h", {"nodes/kernels/"}},
       {"nodes/",
        ".cpp",
@@ -275,6 +277,8 @@ const Case cases[] = {
       "// #include \"runtime/graph/plan.h\"\n/* glm::inverse(m)\n#include \"runtime/app/a.h\" */\n"
       "auto s = \"glm::clamp\", r = R\"x(glm::lookAt \" )x\"; char q = '\"'; auto t = \"glm::clamp\";"},
      ""},
+    {"good_reader", {"nodes/io/a.h", "#include \"runtime/buffers/mesh.h\""}, ""},
+    {"reader_sees_graph", {"nodes/io/a.h", "#include \"runtime/graph/plan.h\""}, "is not below nodes/io/*.h"},
     {"good_oiio",
      {"runtime/io/oiio/a.cpp", "#include <OpenImageIO/imageio.h>\n#include \"runtime/io/oiio/a.h\""},
      ""},
