@@ -1,0 +1,253 @@
+#include "runtime/io/obj_parse.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <optional>
+
+namespace frustum::obj {
+namespace {
+
+bool blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool digit(char c) { return c >= '0' && c <= '9'; }
+
+// Reads tokens of one line after another; a '\' before a line end continues the line.
+class Cursor {
+ public:
+  Cursor(std::string_view text) : begin_(text.data()), at_(begin_), end_(begin_ + text.size()) {}
+
+  bool done() const { return at_ == end_; }
+  bool line_done() const { return at_ == end_ || *at_ == '\n' || *at_ == '#'; }
+  std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
+
+  void skip_blanks() {
+    for (; at_ != end_; ++at_) {
+      if (blank(*at_)) continue;
+      if (*at_ != '\\') return;
+      const char* next = at_ + 1;
+      if (next != end_ && *next == '\r') ++next;
+      if (next == end_ || *next != '\n') return;
+      at_ = next;
+    }
+  }
+  void skip_line() {
+    while (at_ != end_) {
+      const auto* eol = static_cast<const char*>(std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_)));
+      if (eol == nullptr) {
+        at_ = end_;
+        return;
+      }
+      const bool continued = continues(at_, eol);
+      at_ = eol + 1;
+      if (!continued) return;
+    }
+  }
+  static bool continues(const char* begin, const char* eol) {
+    if (eol != begin && eol[-1] == '\r') --eol;
+    return eol != begin && eol[-1] == '\\';
+  }
+  std::string_view word() {
+    const char* start = at_;
+    while (at_ != end_ && !blank(*at_) && *at_ != '\n') ++at_;
+    return {start, static_cast<std::size_t>(at_ - start)};
+  }
+  std::string_view rest_of_line() {
+    const char* start = at_;
+    while (at_ != end_ && *at_ != '\n') ++at_;
+    const char* stop = at_;
+    while (stop != start && blank(stop[-1])) --stop;
+    return {start, static_cast<std::size_t>(stop - start)};
+  }
+  bool take(char c) {
+    if (at_ == end_ || *at_ != c) return false;
+    ++at_;
+    return true;
+  }
+  // A number that ends at a blank or line end; nothing where there is none, or where it is not finite in R.
+  template <class R>
+  std::optional<R> number() {
+    skip_blanks();
+    if (at_ != end_ && *at_ == '+') ++at_;
+    R value{};
+    const auto [stop, error] = std::from_chars(at_, end_, value);
+    if (error == std::errc::result_out_of_range) {
+      // Below the smallest subnormal is zero, as in every other reader; above the largest number is no number.
+      const double wide = std::strtod(std::string(at_, stop).c_str(), nullptr);
+      if (!(std::abs(wide) < 1)) return {};
+      value = static_cast<R>(wide);
+    } else if (error != std::errc{} || !std::isfinite(value)) {
+      return {};
+    }
+    if (stop != end_ && !blank(*stop) && *stop != '\n' && *stop != '\\') return {};
+    at_ = stop;
+    return value;
+  }
+  // A whole number other than zero, of at most nine digits.
+  std::optional<std::int32_t> index() {
+    const bool negative = take('-');
+    const char* start = at_;
+    std::int32_t value = 0;
+    while (at_ != end_ && digit(*at_) && at_ - start < 10) value = static_cast<std::int32_t>(value * 10L + (*at_++ - '0'));
+    if (at_ == start || at_ - start > 9 || value == 0) return {};
+    return negative ? -value : value;
+  }
+
+ private:
+  const char *begin_, *at_, *end_;
+};
+
+template <class R>
+class Parser {
+ public:
+  Parser(std::string_view lines, Chunk<R>& out) : in_(lines), out_(out) {
+    out_.text = lines;
+    // Guesses from files in use: a line of numbers has some 30 bytes.
+    out_.positions.reserve(lines.size() / 20), out_.corners.reserve(lines.size() / 12), out_.sizes.reserve(lines.size() / 36);
+  }
+
+  void run() {
+    while (!in_.done() && out_.error.empty()) {
+      in_.skip_blanks();
+      line_ = in_.offset();
+      if (!in_.line_done()) statement();
+      in_.skip_line();
+    }
+  }
+
+ private:
+  void fail(std::string what) {
+    if (!out_.error.empty()) return;
+    out_.error = std::move(what);
+    out_.error_at = line_;
+  }
+
+  void statement() {
+    const std::string_view key = in_.word();
+    if (key == "f") return face();
+    if (key == "v") return numbers(out_.positions, 3, 3);
+    if (key == "vn") return numbers(out_.normals, 3, 3);
+    if (key == "vt") return numbers(out_.uvs, 1, 2);
+    if (key == "usemtl") {
+      in_.skip_blanks();
+      out_.materials.emplace_back(out_.sizes.size(), in_.rest_of_line());
+      return;
+    }
+    if (!std::all_of(key.begin(), key.end(), [](char c) { return letter(c) || digit(c); }))
+      return fail(fmt::format("'{:.{}}' is not a statement of an OBJ file", printable(key), 20));
+    ++out_.other[key];
+  }
+
+  static std::string printable(std::string_view s) {
+    std::string out(s.substr(0, 20));
+    for (char& c : out)
+      if (c < ' ' || c > '~') c = '?';
+    return out;
+  }
+
+  // `least` numbers, up to `most` kept (zero where they are left out); more (a weight, a colour) are not looked at.
+  void numbers(std::vector<R>& to, int least, int most) {
+    for (int i = 0; i < most; ++i) {
+      in_.skip_blanks();
+      if (i >= least && in_.line_done()) {
+        to.push_back(0);
+        continue;
+      }
+      const auto n = in_.template number<R>();
+      if (!n) return fail(in_.line_done() ? fmt::format("{} numbers are needed, and there are {}", least, i)
+                                          : fmt::format("'{}' is not a finite number", printable(in_.word())));
+      to.push_back(*n);
+    }
+  }
+
+  std::int32_t local_count(int field) const {
+    const std::size_t n = field == 0 ? out_.positions.size() / 3 : field == 1 ? out_.uvs.size() / 2 : out_.normals.size() / 3;
+    return static_cast<std::int32_t>(n);
+  }
+
+  bool field(std::int32_t& to, int which) {
+    const auto i = in_.index();
+    if (!i) return false;
+    to = *i > 0 ? *i - 1 : local_count(which) + *i;
+    if (*i < 0) out_.relative.push_back(3 * out_.corners.size() + static_cast<std::size_t>(which));
+    return true;
+  }
+
+  // v, v/vt, v//vn or v/vt/vn
+  bool corner() {
+    Corner c;
+    if (!field(c.v, 0)) return false;
+    if (in_.take('/')) {
+      if (in_.take('/')) {
+        if (!field(c.vn, 2)) return false;
+      } else {
+        if (!field(c.vt, 1)) return false;
+        if (in_.take('/') && !field(c.vn, 2)) return false;
+      }
+    }
+    out_.corners.push_back(c);
+    return true;
+  }
+
+  void face() {
+    std::uint32_t n = 0;
+    for (in_.skip_blanks(); !in_.line_done(); in_.skip_blanks(), ++n) {
+      const std::size_t before = in_.offset();
+      if (!corner()) {
+        const std::string_view rest = out_.text.substr(before);
+        return fail(fmt::format("'{}' is not a corner (v, v/vt, v//vn or v/vt/vn, counted from 1 or -1)",
+                                printable(rest.substr(0, rest.find_first_of(" \t\r\n")))));
+      }
+    }
+    if (n < 3) return fail(fmt::format("a face needs 3 corners, and this has {}", n));
+    out_.sizes.push_back(n);
+  }
+
+  Cursor in_;
+  Chunk<R>& out_;
+  std::size_t line_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::string_view> split_lines(std::string_view text, std::size_t size) {
+  std::vector<std::string_view> pieces;
+  while (!text.empty()) {
+    std::size_t end = std::min(size, text.size());
+    while (end < text.size()) {
+      const std::size_t eol = text.find('\n', end - 1);
+      end = eol == std::string_view::npos ? text.size() : eol + 1;
+      if (eol == std::string_view::npos || !Cursor::continues(text.data(), text.data() + eol)) break;
+      ++end;
+    }
+    end = std::min(end, text.size());
+    pieces.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return pieces;
+}
+
+template <class R>
+void parse(std::string_view lines, Chunk<R>& out) {
+  Parser<R>(lines, out).run();
+}
+template void parse(std::string_view, Chunk<float>&);
+template void parse(std::string_view, Chunk<double>&);
+
+std::size_t find_face(std::string_view lines, std::size_t face) {
+  Cursor in(lines);
+  while (!in.done()) {
+    in.skip_blanks();
+    const std::size_t line = in.offset();
+    if (!in.line_done() && in.word() == "f" && face-- == 0) return line;
+    in.skip_line();
+  }
+  return lines.size();
+}
+
+}  // namespace frustum::obj
