@@ -10,6 +10,8 @@
 namespace frustum {
 namespace {
 
+constexpr std::size_t huge_page = std::size_t{2} << 20;
+
 // Fresh anonymous pages: zero without touching them, on 4 KiB boundaries, given back at once when freed.
 class Pages {
  public:
@@ -18,6 +20,8 @@ class Pages {
     void* p = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (p == MAP_FAILED) throw WorldError("out_of_memory", "no memory for a raster of " + std::to_string(size) + " bytes");
     data_ = static_cast<std::byte*>(p);
+    // Huge pages where the system has them: a 1080p RGBA raster then costs 16 page faults instead of 8100.
+    if (size >= huge_page) madvise(p, size, MADV_HUGEPAGE);
   }
   ~Pages() {
     if (data_ != nullptr) munmap(data_, size_);
