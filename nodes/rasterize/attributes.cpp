@@ -1,0 +1,190 @@
+#include "nodes/rasterize/attributes.h"
+
+#include <fmt/format.h>
+
+#include "nodes/all_nodes.h"
+#include "runtime/buffers/image.h"
+#include "runtime/buffers/mesh.h"
+#include "runtime/core/node_type.h"
+
+namespace frustum {
+namespace kernels {
+
+constexpr auto choices(Interpolation) {
+  return std::array{std::pair{Interpolation::hyperbolic, "hyperbolic"},
+                    std::pair{Interpolation::affine, "affine"}};
+}
+
+}  // namespace kernels
+namespace {
+
+using kernels::Attribute;
+using kernels::AttributeDomain;
+using kernels::Interpolation;
+using kernels::PlaneView;
+
+struct Inputs {
+  Tiled<Visibility> hits;
+  Ref<Mesh> mesh;
+};
+struct Params {
+  Interpolation interpolation = Interpolation::hyperbolic;
+};
+struct Outputs {
+  Tiled<Image> points;
+};
+
+// A column and where its planes stand in the frame: `first` is its first value, followed by its other
+// components; then, where it has slopes, those by x and those by y.
+struct Source {
+  Ref<Column> column;
+  AttributeDomain domain;
+  std::size_t width, first;
+  bool slopes;
+};
+
+template <class R>
+struct Interpolator {
+  Ref<Mesh> mesh;
+  Ref<Column> position;
+  Ref<SamplePattern> pattern;
+  Interpolation interpolation;
+  std::vector<Source> sources;
+  int hit_id, w;  // planes
+};
+using State = std::variant<Interpolator<float>, Interpolator<double>>;
+
+std::optional<AttributeDomain> domain_of(const Column& c) {
+  if (c.kind() != NumberKind::f32 && c.kind() != NumberKind::f64) return std::nullopt;
+  if (c.domain() == Domain::vertex) return AttributeDomain::vertex;
+  if (c.domain() == Domain::corner) return AttributeDomain::corner;
+  if (c.domain() == Domain::face) return AttributeDomain::face;
+  return std::nullopt;
+}
+
+// The names of a column's value planes (runtime/buffers/image.h).
+std::vector<std::string> value_names(const Column& c) {
+  if (c.name() == "uv" && c.width() == 2) return {"uv.u", "uv.v"};
+  if (c.width() == 1) return {c.name()};
+  const std::string prefix = c.name() == "normal" ? "N" : c.name() == "world" ? "P" : c.name();
+  std::vector<std::string> names;
+  for (int i = 0; i < c.width(); ++i) names.push_back(prefix + "." + "xyzw"[i]);
+  return names;
+}
+
+kernels::SamplePositions positions_of(const SamplePattern* pattern) {
+  if (pattern == nullptr) return kernels::centre_sample();
+  return {pattern->samples, pattern->period, pattern->x, pattern->y};
+}
+
+// Adds the planes of every column that has a place on the screen.
+template <class R>
+std::vector<Source> add_planes(const Mesh& mesh, PlaneList& planes) {
+  std::vector<Source> sources;
+  for (const Ref<Column>& c : mesh.columns) {
+    const auto domain = domain_of(*c);
+    if (!domain || c->name() == "position") continue;
+    const bool slopes = c->name() == "uv" && c->width() == 2;
+    sources.push_back({as_real<R>(c), *domain, static_cast<std::size_t>(c->width()), planes.size(), slopes});
+    for (const std::string& name : value_names(*c)) planes.push_back({name, plane_kind_of<R>});
+    if (slopes)
+      for (const char* name : {"uv.du_dx", "uv.dv_dx", "uv.du_dy", "uv.dv_dy"})
+        planes.push_back({name, plane_kind_of<R>});
+  }
+  return sources;
+}
+
+Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
+  const Frame& hits = in.hits.frame();
+  return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
+    Frame points{hits.window, hits.pattern, {{"id", PlaneKind::u32}}};
+    std::vector<Source> sources = add_planes<R>(*in.mesh, points.planes);
+    const int w = static_cast<int>(points.planes.size());
+    points.planes.push_back({"w", plane_kind_of<R>});
+    Interpolator<R> state{in.mesh,
+                          in.mesh->template real<R>("position"),
+                          hits.pattern,
+                          p.interpolation,
+                          std::move(sources),
+                          in.hits.read("id"),
+                          w};
+    return {std::move(state), {std::move(points)}};
+  });
+}
+
+template <class T>
+PlaneView<T> view(const Tile& tile, std::size_t plane) {
+  const int i = static_cast<int>(plane);
+  if (!tile.has(i)) return {};
+  return {tile.row<T>(i, 0, tile.rect().y0), tile.row_stride(), tile.sample_stride()};
+}
+
+// What of a column is read by somebody.
+template <class R>
+std::optional<Attribute<R>> wanted(const Source& s, const Tile& to) {
+  Attribute<R> a{static_cast<const R*>(s.column->data()), static_cast<int>(s.width), s.domain};
+  bool any = false;
+  for (std::size_t i = 0; i < s.width; ++i) {
+    a.value[i] = view<R>(to, s.first + i);
+    if (s.slopes) {
+      a.dx[i] = view<R>(to, s.first + s.width + i);
+      a.dy[i] = view<R>(to, s.first + 2 * s.width + i);
+    }
+    any = any || a.value[i].data != nullptr || a.dx[i].data != nullptr || a.dy[i].data != nullptr;
+  }
+  return any ? std::optional(a) : std::nullopt;
+}
+
+// Copies the ids of one row, if somebody reads them, and throws where they are of another mesh.
+void check_and_copy(const std::uint32_t* from, int count, std::uint32_t faces, std::uint32_t* to) {
+  std::uint32_t greatest = 0;
+  for (int x = 0; x < count; ++x) greatest = std::max(greatest, from[x] + 1);  // no_face + 1 is 0
+  if (greatest > faces)
+    throw NodeError("wrong_mesh",
+                    fmt::format("face {} is seen, but the mesh has {} faces: the hits are of another mesh",
+                                greatest - 1, faces));
+  if (to != nullptr) std::copy_n(from, count, to);
+}
+
+template <class R>
+void fill(const Interpolator<R>& s, const Tile& from, const Tile& to) {
+  const Rect& r = to.rect();
+  const auto ids = view<const std::uint32_t>(from, static_cast<std::size_t>(s.hit_id));
+  const auto faces = static_cast<std::uint32_t>(s.mesh->faces());
+  for (int sample = 0; sample < to.samples(); ++sample)
+    for (int y = r.y0; y < r.y1; ++y)
+      check_and_copy(ids.row(sample, y - r.y0), r.width(), faces,
+                     to.has(0) ? to.row<std::uint32_t>(0, sample, y) : nullptr);
+
+  std::vector<Attribute<R>> attributes;
+  for (const Source& source : s.sources)
+    if (const auto a = wanted<R>(source, to)) attributes.push_back(*a);
+  const kernels::ScreenMesh<R> screen{s.position->template values<glm::vec<4, R>>(), s.mesh->triangles(), {}};
+  const PlaneView<R> w = view<R>(to, static_cast<std::size_t>(s.w));
+  attributes_at<R>({screen, positions_of(s.pattern.get()), s.interpolation}, {r.x0, r.y0, r.x1, r.y1}, ids,
+                   {attributes, w});
+}
+
+void tile(const State& state, const TilesOf<Inputs>& in, const TilesOf<Outputs>& out, Arena&) {
+  const Tile& to = out[&Outputs::points];
+  const Tile from = in[&Inputs::hits].part(to.rect());
+  std::visit([&](const auto& interpolator) { fill(interpolator, from, to); }, state);
+}
+
+}  // namespace
+
+NodeType nodes::rasterize_attributes() {
+  return pixel_node("rasterize.attributes", prepare, tile)
+      .doc("Gives the attributes of the faces seen, interpolated to every sample.")
+      .cite("Heckbert & Moreton 1991, Interpolation for Polygon Texture Mapping and Shading (hyperbolic)")
+      .covers(31, 32)
+      .input("hits", &Inputs::hits, "Which face is seen at each sample.")
+      .input("mesh", &Inputs::mesh, "The mesh that was rasterized.", {.space = Space::screen})
+      .param("interpolation", &Params::interpolation,
+             "hyperbolic is straight in the scene; affine is straight on the screen, so textures swim in "
+             "perspective.")
+      .output("points", &Outputs::points,
+              "id, uv with derivatives, N, P, w and other columns; 0 where nothing is seen.");
+}
+
+}  // namespace frustum
