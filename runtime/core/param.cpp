@@ -73,6 +73,10 @@ bool read_rgb(const Json& j, glm::dvec3& rgb, const ParamOptions& options, Param
 
 void read_color(const Json& j, Color& out, const ParamOptions& options, ParamReader& reader) {
   glm::dvec3 rgb{0};
+  if (j.is_number()) {
+    if (read_real(j, rgb.r, options, reader)) out.rgb = glm::dvec3{rgb.r};
+    return;
+  }
   if (!j.is_object()) {
     if (read_rgb(j, rgb, options, reader)) out.rgb = rgb;
     return;
@@ -195,7 +199,7 @@ ParamType integer_type(IntegerAccess access) {
 }
 
 ParamType color_type() {
-  ParamType t{.kind = Kind::color, .name = "a colour, [r, g, b]"};
+  ParamType t{.kind = Kind::color, .name = "a colour, [r, g, b], or a number for grey"};
   t.read = [](const Json& j, void* value, const ParamOptions& options, ParamReader& reader) {
     read_color(j, *static_cast<Color*>(value), options, reader);
   };

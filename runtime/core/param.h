@@ -4,7 +4,7 @@
 //   bool, int, std::int64_t, std::uint32_t, double    a boolean or number
 //   std::string                                       text
 //   FilePath                                          a path, relative to the graph file
-//   Color                                             [r, g, b], or {"space": "srgb", "value": [r, g, b]}
+//   Color                                             [r, g, b], a number for grey, or {"space": "srgb", "value": [r, g, b]}
 //   enum E with choices(E)                            one of the choices' texts
 //   glm::dvec2/3/4, glm::ivec2, std::array<T, N>      an array of that length
 //   glm::dmat4                                        four rows of four, as on a blackboard

@@ -24,10 +24,12 @@ Json numbers(std::size_t count, const ParamOptions& options) {
 
 Json color_schema(const ParamOptions& options) {
   const Json rgb = numbers(3, options);
-  return {{"oneOf", Json::array({rgb, {{"type", "object"},
-                                       {"properties", {{"space", {{"type", "string"}}}, {"value", rgb}}},
-                                       {"required", Json::array({"space", "value"})},
-                                       {"additionalProperties", false}}})}};
+  Json grey = {{"type", "number"}};
+  put_range(grey, options);
+  return {{"oneOf", Json::array({rgb, grey, {{"type", "object"},
+                                             {"properties", {{"space", {{"type", "string"}}}, {"value", rgb}}},
+                                             {"required", Json::array({"space", "value"})},
+                                             {"additionalProperties", false}}})}};
 }
 
 Json record_schema(const ParamType& type, const void* defaults) {
