@@ -1,0 +1,35 @@
+#include "nodes/light/ambient.h"
+
+#include "nodes/all_nodes.h"
+#include "runtime/buffers/light.h"
+#include "runtime/core/node_type.h"
+
+namespace frustum {
+namespace {
+
+struct Inputs {};
+struct Params {
+  Color color{glm::dvec3{0.1}};
+};
+struct Outputs {
+  Ref<Light> light;
+};
+
+Outputs run(const Inputs&, const Params& p, Context&) {
+  if (!is_radiance(p.color.rgb))
+    throw NodeError("not_finite", "the colour of the light is not a finite number");
+  return {std::make_shared<Light>(Light{.kind = Light::Kind::ambient, .color = p.color.rgb})};
+}
+
+}  // namespace
+
+NodeType nodes::light_ambient() {
+  return node("light.ambient", run)
+      .doc("Makes a light that reaches every point from everywhere alike.")
+      .covers(55, 62)
+      .param("color", &Params::color, "Linear Rec.709; raising it brightens what no other light reaches.",
+             {.range = at_least(0)})
+      .output("light", &Outputs::light, "The light.");
+}
+
+}  // namespace frustum

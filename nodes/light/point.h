@@ -1,0 +1,20 @@
+// Light from a point, weaker with distance.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cmath>
+
+namespace frustum {
+
+/// Whether 1 / (a.x + a.y d + a.z d^2) is positive and finite for every distance d > 0.
+inline bool falls_off(const glm::dvec3& a) {
+  const double sum = a.x + a.y + a.z;
+  return a.x >= 0 && a.y >= 0 && a.z >= 0 && sum > 0 && std::isfinite(sum);
+}
+
+inline bool is_place(const glm::dvec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+}  // namespace frustum
