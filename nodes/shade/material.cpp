@@ -1,0 +1,53 @@
+#include "nodes/shade/material.h"
+
+#include "nodes/all_nodes.h"
+#include "runtime/buffers/material.h"
+#include "runtime/core/node_type.h"
+
+#include <fmt/format.h>
+
+namespace frustum {
+namespace {
+
+struct Inputs {};
+struct Params {
+  std::string name = {};
+  Reflection model = Reflection::blinn;
+  Color ambient{glm::dvec3{1}}, diffuse{glm::dvec3{0.8}}, specular{glm::dvec3{0}};
+  double shininess = 32;
+};
+struct Outputs {
+  Ref<Material> material;
+};
+
+Outputs run(const Inputs&, const Params& p, Context& ctx) {
+  const Material m{p.name, p.model, p.ambient.rgb, p.diffuse.rgb, p.specular.rgb, p.shininess};
+  const glm::dvec3 highlight = p.model == Reflection::lambert ? glm::dvec3{0} : m.specular;
+  if (const double share = largest_reflectance(m.diffuse, highlight); share > 1)
+    ctx.warn("makes_energy",
+             fmt::format("diffuse and specular add up to {:.3g}: the surface makes light", share));
+  return {std::make_shared<Material>(m)};
+}
+
+}  // namespace
+
+NodeType nodes::shade_material() {
+  return node("shade.material", run)
+      .doc("Says how a surface reflects light: Lambert, with a Phong or Blinn highlight.")
+      .cite("Lambert 1760; Phong 1975, doi:10.1145/360825.360839; Blinn 1977, doi:10.1145/563858.563893")
+      .covers(49, 50)
+      .param("name", &Params::name, "For people and files; nothing depends on it.")
+      .param("model", &Params::model,
+             "lambert has no highlight; phong mirrors the light, blinn uses the half vector.")
+      .param("ambient", &Params::ambient, "Share of ambient light reflected, times the diffuse colour.",
+             {.range = at_least(0)})
+      .param("diffuse", &Params::diffuse, "Share of light scattered alike in all directions, linear Rec.709.",
+             {.range = at_least(0)})
+      .param("specular", &Params::specular, "Brightness of the highlight at its peak; a number is grey.",
+             {.range = at_least(0)})
+      .param("shininess", &Params::shininess,
+             "Exponent of the highlight; raising it makes the highlight smaller.", {.range = between(0, 1e6)})
+      .output("material", &Outputs::material, "The material.");
+}
+
+}  // namespace frustum
