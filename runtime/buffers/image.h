@@ -5,6 +5,7 @@
 #include "runtime/core/raster.h"
 
 #include <cstdint>
+#include <string_view>
 
 namespace frustum {
 
@@ -33,6 +34,9 @@ struct Visibility {
 };
 
 constexpr std::uint32_t no_face = 0xFFFFFFFFu;
+
+// The colour space of all colour that nodes compute: linear light, Rec.709 primaries, D65 white.
+constexpr std::string_view linear_rec709 = "lin_rec709";
 
 template <>
 const BufferType& buffer_type<Image>();

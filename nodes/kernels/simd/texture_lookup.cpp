@@ -1,0 +1,304 @@
+#include "nodes/kernels/simd/texture_lookup.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nodes/kernels/simd/texture_lookup.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace frustum::kernels::simd::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+
+void look_up_pyramid(const TexelPyramid& p, Lookup filter, const UvRows<float>& in, std::size_t n,
+                     const RgbaRows<float>& out) {
+  kernels::look_up(p, filter, in, n, out);
+}
+void look_up_checker(const CheckerColors<float>& c, Lookup filter, const UvRows<float>& in, std::size_t n,
+                     const RgbaRows<float>& out) {
+  kernels::look_up(c, filter, in, n, out);
+}
+
+#else
+
+using D = hn::ScalableTag<float>;
+using Di = hn::RebindToSigned<D>;
+using V = hn::Vec<D>;
+using Vi = hn::Vec<Di>;
+using M = hn::Mask<D>;
+constexpr std::size_t max_lanes = HWY_MAX_BYTES / sizeof(float);
+
+UvRows<float> advanced(const UvRows<float>& r, std::size_t x) {
+  const auto at = [x](auto* p) { return p == nullptr ? p : p + x; };
+  return {at(r.u), at(r.v), at(r.du_dx), at(r.dv_dx), at(r.du_dy), at(r.dv_dy), at(r.id)};
+}
+
+RgbaRows<float> advanced(const RgbaRows<float>& r, std::size_t x) {
+  RgbaRows<float> moved;
+  for (std::size_t k = 0; k < 4; ++k) moved.plane[k] = r.plane[k] == nullptr ? nullptr : r.plane[k] + x;
+  return moved;
+}
+
+// Calls body(in, out) for each whole vector of points. The last, partial one is left to the scalar twin of
+// `source`.
+template <class Source, class Body>
+HWY_INLINE void for_each_vector(const Source& source, Lookup filter, const UvRows<float>& in, std::size_t n,
+                                const RgbaRows<float>& out, Body&& body) {
+  const std::size_t lanes = hn::Lanes(D());
+  std::size_t x = 0;
+  for (; x + lanes <= n; x += lanes) body(advanced(in, x), advanced(out, x));
+  if (x < n) kernels::look_up(source, filter, advanced(in, x), n - x, advanced(out, x));
+}
+
+HWY_INLINE M covered(const UvRows<float>& in) {
+  const D d;
+  const hn::RebindToUnsigned<D> du;
+  if (in.id == nullptr) return hn::Eq(hn::Zero(d), hn::Zero(d));
+  return hn::RebindMask(d, hn::Ne(hn::LoadU(du, in.id), hn::Set(du, no_point)));
+}
+
+HWY_INLINE void put(const RgbaRows<float>& out, std::size_t k, M inside, V value) {
+  const D d;
+  if (out.plane[k] != nullptr) hn::StoreU(hn::IfThenElseZero(inside, value), d, out.plane[k]);
+}
+
+// ----- checkerboard
+
+HWY_INLINE V square_wave(V x) {
+  const D d;
+  const V half = hn::Mul(x, hn::Set(d, 0.5F));
+  const M odd = hn::Ge(hn::Sub(half, hn::Floor(half)), hn::Set(d, 0.5F));
+  return hn::IfThenElse(odd, hn::Set(d, -1.0F), hn::Set(d, 1.0F));
+}
+
+HWY_INLINE V triangle_wave(V x) {
+  const D d;
+  const V positive = hn::Abs(x), two = hn::Set(d, 2.0F);
+  const V r = hn::Sub(positive, hn::Mul(two, hn::Floor(hn::Mul(positive, hn::Set(d, 0.5F)))));
+  return hn::IfThenElse(hn::Le(r, hn::Set(d, 1.0F)), r, hn::Sub(two, r));
+}
+
+HWY_INLINE V square_wave_mean(V x, V half) {
+  const D d;
+  const V a = hn::Sub(x, half), b = hn::Add(x, half);
+  const V mean = hn::Div(hn::Sub(triangle_wave(b), triangle_wave(a)), hn::Sub(b, a));
+  const V filtered = hn::IfThenElseZero(hn::And(hn::Lt(a, b), hn::Eq(mean, mean)), mean);
+  return hn::IfThenElse(hn::Eq(a, b), square_wave(x), filtered);
+}
+
+void look_up_checker(const CheckerColors<float>& c, Lookup filter, const UvRows<float>& in, std::size_t n,
+                     const RgbaRows<float>& out) {
+  const D d;
+  const V scale = hn::Set(d, c.scale), half_scale = hn::Set(d, 0.5F * c.scale), half = hn::Set(d, 0.5F);
+  for_each_vector(c, filter, in, n, out, [&](const UvRows<float>& p, const RgbaRows<float>& rgba) HWY_ATTR {
+    const M inside = covered(p);
+    if (hn::AllFalse(d, inside)) {
+      for (std::size_t k = 0; k < 4; ++k) put(rgba, k, inside, hn::Zero(d));
+      return;
+    }
+    const V u = hn::Mul(hn::LoadU(d, p.u), scale), v = hn::Mul(hn::LoadU(d, p.v), scale);
+    V mean_u, mean_v;
+    if (filter == Lookup::nearest) {
+      mean_u = square_wave(u), mean_v = square_wave(v);
+    } else {
+      const V width_u = hn::Add(hn::Abs(hn::LoadU(d, p.du_dx)), hn::Abs(hn::LoadU(d, p.du_dy)));
+      const V width_v = hn::Add(hn::Abs(hn::LoadU(d, p.dv_dx)), hn::Abs(hn::LoadU(d, p.dv_dy)));
+      mean_u = square_wave_mean(u, hn::Mul(width_u, half_scale));
+      mean_v = square_wave_mean(v, hn::Mul(width_v, half_scale));
+    }
+    const V e = hn::Add(half, hn::Mul(half, hn::Mul(mean_u, mean_v)));
+    const V o = hn::Sub(hn::Set(d, 1.0F), e);
+    for (std::size_t k = 0; k < 3; ++k)
+      put(rgba, k, inside, hn::Add(hn::Mul(e, hn::Set(d, c.even[k])), hn::Mul(o, hn::Set(d, c.odd[k]))));
+    put(rgba, 3, inside, hn::Set(d, 1.0F));
+  });
+}
+
+// ----- pyramid
+
+HWY_INLINE V fold(V u, EdgeRule rule) {
+  const D d;
+  const V one = hn::Set(d, 1.0F), two = hn::Set(d, 2.0F);
+  if (rule == EdgeRule::clamp)
+    return hn::IfThenElseZero(hn::Gt(u, hn::Zero(d)), hn::IfThenElse(hn::Lt(u, one), u, one));
+  V t;
+  if (rule == EdgeRule::repeat) {
+    t = hn::Sub(u, hn::Floor(u));
+  } else {
+    const V m = hn::Sub(u, hn::Mul(two, hn::Floor(hn::Mul(u, hn::Set(d, 0.5F)))));
+    t = hn::IfThenElse(hn::Le(m, one), m, hn::Sub(two, m));
+  }
+  return hn::IfThenElseZero(hn::Ge(t, hn::Zero(d)), t);
+}
+
+struct Pair {
+  Vi first, second;
+  V fraction;
+};
+
+HWY_INLINE Pair texel_pair(V t, V size, EdgeRule rule) {
+  const D d;
+  const Di di;
+  const V x = hn::Sub(hn::Mul(t, size), hn::Set(d, 0.5F));
+  const V low = hn::Floor(x);
+  const Vi i = hn::ConvertTo(di, low), one = hn::Set(di, 1), zero = hn::Zero(di);
+  const Vi last = hn::Sub(hn::ConvertTo(di, size), one), next = hn::Add(i, one);
+  const bool repeat = rule == EdgeRule::repeat;
+  const Vi first = hn::IfThenElse(hn::Lt(i, zero), repeat ? last : zero, i);
+  const Vi second = hn::IfThenElse(hn::Gt(next, last), repeat ? zero : last, next);
+  return {first, second, hn::Sub(x, low)};
+}
+
+HWY_INLINE V log2_of_footprint(V x) {
+  const D d;
+  const Di di;
+  const hn::RebindToUnsigned<D> du;
+  const auto bits = hn::BitCast(du, x);
+  const auto exponent = hn::And(hn::ShiftRight<23>(bits), hn::Set(du, 0xFFu));
+  const V whole = hn::ConvertTo(d, hn::Sub(hn::BitCast(di, exponent), hn::Set(di, 127)));
+  const auto significand = hn::Or(hn::And(bits, hn::Set(du, 0x7FFFFFu)), hn::Set(du, 0x3F800000u));
+  const V one = hn::Set(d, 1.0F), t = hn::Sub(hn::BitCast(d, significand), one);
+  V q = hn::Set(d, level_log2[4]);
+  for (std::size_t i = 4; i-- > 0;) q = hn::Add(hn::Mul(q, t), hn::Set(d, level_log2[i]));
+  return hn::Add(whole, hn::Mul(t, hn::Add(one, hn::Mul(hn::Sub(one, t), q))));
+}
+
+HWY_INLINE V pyramid_level(const UvRows<float>& p, const TexelLevel& base, int last) {
+  const D d;
+  const V w = hn::Set(d, static_cast<float>(base.width)), h = hn::Set(d, static_cast<float>(base.height));
+  const V ux = hn::Mul(hn::LoadU(d, p.du_dx), w), vx = hn::Mul(hn::LoadU(d, p.dv_dx), h);
+  const V uy = hn::Mul(hn::LoadU(d, p.du_dy), w), vy = hn::Mul(hn::LoadU(d, p.dv_dy), h);
+  const V a = hn::Add(hn::Mul(ux, ux), hn::Mul(vx, vx)), b = hn::Add(hn::Mul(uy, uy), hn::Mul(vy, vy));
+  const V larger = hn::IfThenElse(hn::Or(hn::Ne(a, a), hn::Gt(a, b)), a, b);
+  const V level = hn::Mul(hn::Set(d, 0.5F), log2_of_footprint(larger)),
+          top = hn::Set(d, static_cast<float>(last));
+  return hn::IfThenElseZero(hn::Gt(level, hn::Zero(d)), hn::IfThenElse(hn::Lt(level, top), level, top));
+}
+
+// Where one level is read, lane by lane: indices of the four texels, and the fractions between them.
+struct Taps {
+  HWY_ALIGN std::int32_t texel[4][max_lanes];
+  HWY_ALIGN float fx[max_lanes], fy[max_lanes];
+};
+
+HWY_INLINE void find_taps(const TexelPyramid& p, V s, V t, V width, V height, Taps& taps) {
+  const D d;
+  const Di di;
+  const Pair x = texel_pair(s, width, p.wrap_u), y = texel_pair(t, height, p.wrap_v);
+  const Vi stride = hn::ConvertTo(di, width);
+  const Vi top = hn::Mul(y.first, stride), bottom = hn::Mul(y.second, stride);
+  hn::Store(hn::Add(top, x.first), di, taps.texel[0]);
+  hn::Store(hn::Add(top, x.second), di, taps.texel[1]);
+  hn::Store(hn::Add(bottom, x.first), di, taps.texel[2]);
+  hn::Store(hn::Add(bottom, x.second), di, taps.texel[3]);
+  hn::Store(x.fraction, d, taps.fx);
+  hn::Store(y.fraction, d, taps.fy);
+}
+
+using D4 = hn::FixedTag<float, 4>;
+using V4 = hn::Vec<D4>;
+
+HWY_INLINE V4 blend(V4 a, V4 b, V4 f) { return hn::Add(a, hn::Mul(f, hn::Sub(b, a))); }
+
+HWY_INLINE V4 fetch(const float* rgba, const Taps& taps, std::size_t lane) {
+  const D4 d4;
+  const auto at = [&](std::size_t k)
+                      HWY_ATTR { return hn::LoadU(d4, rgba + std::ptrdiff_t{taps.texel[k][lane]} * 4); };
+  const V4 fx = hn::Set(d4, taps.fx[lane]);
+  return blend(blend(at(0), at(1), fx), blend(at(2), at(3), fx), hn::Set(d4, taps.fy[lane]));
+}
+
+// Four colours side by side become four numbers of each channel.
+HWY_INLINE void put_transposed(const RgbaRows<float>& out, std::size_t lane, const V4 (&c)[4]) {
+  const D4 d4;
+  const hn::Repartition<double, D4> dd;
+  const auto wide = [&](V4 v) HWY_ATTR { return hn::BitCast(dd, v); };
+  const V4 rg01 = hn::InterleaveLower(d4, c[0], c[1]), rg23 = hn::InterleaveLower(d4, c[2], c[3]);
+  const V4 ba01 = hn::InterleaveUpper(d4, c[0], c[1]), ba23 = hn::InterleaveUpper(d4, c[2], c[3]);
+  const V4 channel[4] = {hn::BitCast(d4, hn::InterleaveLower(dd, wide(rg01), wide(rg23))),
+                         hn::BitCast(d4, hn::InterleaveUpper(dd, wide(rg01), wide(rg23))),
+                         hn::BitCast(d4, hn::InterleaveLower(dd, wide(ba01), wide(ba23))),
+                         hn::BitCast(d4, hn::InterleaveUpper(dd, wide(ba01), wide(ba23)))};
+  for (std::size_t k = 0; k < 4; ++k)
+    if (out.plane[k] != nullptr) hn::StoreU(channel[k], d4, out.plane[k] + lane);
+}
+
+void look_up_pyramid(const TexelPyramid& p, Lookup filter, const UvRows<float>& in, std::size_t n,
+                     const RgbaRows<float>& out) {
+  if (filter == Lookup::nearest) return kernels::look_up(p, filter, in, n, out);
+  const D d;
+  const Di di;
+  const int last = static_cast<int>(p.levels.size()) - 1;
+  HWY_ALIGN float widths[33], heights[33];
+  for (std::size_t i = 0; i < p.levels.size() + 1; ++i) {
+    const TexelLevel& level = p.levels[std::min(i, p.levels.size() - 1)];
+    widths[i] = static_cast<float>(level.width), heights[i] = static_cast<float>(level.height);
+  }
+  for_each_vector(p, filter, in, n, out, [&](const UvRows<float>& row, const RgbaRows<float>& rgba) HWY_ATTR {
+    const M inside = covered(row);
+    if (hn::AllFalse(d, inside)) {
+      for (std::size_t k = 0; k < 4; ++k) put(rgba, k, inside, hn::Zero(d));
+      return;
+    }
+    const V s = fold(hn::LoadU(d, row.u), p.wrap_u);
+    const V t = hn::Sub(hn::Set(d, 1.0F), fold(hn::LoadU(d, row.v), p.wrap_v));
+    V level = hn::Zero(d);
+    if (filter == Lookup::trilinear) level = pyramid_level(row, p.levels[0], last);
+    const Vi fine = hn::ConvertTo(di, level), coarse = hn::Add(fine, hn::Set(di, 1));
+    const V fraction = hn::Sub(level, hn::ConvertTo(d, fine));
+    const bool blends = !hn::AllFalse(d, hn::Gt(fraction, hn::Zero(d)));
+
+    Taps near, far;
+    find_taps(p, s, t, hn::GatherIndex(d, widths, fine), hn::GatherIndex(d, heights, fine), near);
+    if (blends)
+      find_taps(p, s, t, hn::GatherIndex(d, widths, coarse), hn::GatherIndex(d, heights, coarse), far);
+    HWY_ALIGN std::int32_t levels[max_lanes];
+    HWY_ALIGN float fractions[max_lanes], seen[max_lanes];
+    hn::Store(fine, di, levels);
+    hn::Store(fraction, d, fractions);
+    hn::Store(hn::IfThenElseZero(inside, hn::Set(d, 1.0F)), d, seen);
+
+    const D4 d4;
+    for (std::size_t lane = 0; lane < hn::Lanes(d); lane += 4) {
+      V4 c[4];
+      for (std::size_t i = 0; i < 4; ++i) {
+        c[i] = hn::Zero(d4);
+        if (seen[lane + i] == 0) continue;
+        const TexelLevel* at = &p.levels[static_cast<std::size_t>(levels[lane + i])];
+        c[i] = fetch(at->rgba, near, lane + i);
+        if (fractions[lane + i] > 0)
+          c[i] = blend(c[i], fetch(at[1].rgba, far, lane + i), hn::Set(d4, fractions[lane + i]));
+      }
+      put_transposed(rgba, lane, c);
+    }
+  });
+}
+
+#endif
+
+}  // namespace
+}  // namespace frustum::kernels::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace frustum::kernels::simd {
+
+HWY_EXPORT(look_up_pyramid);
+HWY_EXPORT(look_up_checker);
+
+void look_up(const TexelPyramid& pyramid, Lookup filter, const UvRows<float>& in, std::size_t n,
+             const RgbaRows<float>& out) {
+  HWY_DYNAMIC_DISPATCH(look_up_pyramid)(pyramid, filter, in, n, out);
+}
+void look_up(const CheckerColors<float>& checker, Lookup filter, const UvRows<float>& in, std::size_t n,
+             const RgbaRows<float>& out) {
+  HWY_DYNAMIC_DISPATCH(look_up_checker)(checker, filter, in, n, out);
+}
+
+}  // namespace frustum::kernels::simd
+#endif

@@ -1,0 +1,265 @@
+// texture.sample: pyramids and checkerboards against closed forms, and the vector kernels against their
+// scalar twins.
+#include "nodes/all_nodes.h"
+#include "nodes/kernels/simd/texture_lookup.h"
+#include "runtime/buffers/texture.h"
+#include "tests/support/tiles.h"
+#include "tests/support/ulps.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace frustum {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+
+// Texels that are all different; every level its own.
+MipPyramid random_pyramid(int width, int height, Wrap u, Wrap v) {
+  test::Random random(7);
+  MipPyramid p{.levels = {}, .wrap_u = u, .wrap_v = v};
+  for (int w = width, h = height;; w = std::max(1, w / 2), h = std::max(1, h / 2)) {
+    MipPyramid::Level level{w, h, {}};
+    for (int i = 0; i < w * h * 4; ++i)
+      level.rgba.push_back(static_cast<float>(random.below(1 << 20)) / (1 << 20));
+    p.levels.push_back(std::move(level));
+    if (w == 1 && h == 1) return p;
+  }
+}
+
+std::vector<kernels::TexelLevel> levels_of(const MipPyramid& p) {
+  std::vector<kernels::TexelLevel> levels;
+  for (const auto& l : p.levels) levels.push_back({l.width, l.height, l.rgba.data()});
+  return levels;
+}
+
+struct Points {
+  std::vector<float> u, v, du_dx, dv_dx, du_dy, dv_dy;
+  std::vector<std::uint32_t> id;
+  void add(float a, float b, float scale, std::uint32_t face = 0) {
+    u.push_back(a), v.push_back(b), id.push_back(face);
+    du_dx.push_back(scale), dv_dx.push_back(-0.3F * scale), du_dy.push_back(0.2F * scale),
+        dv_dy.push_back(0.9F * scale);
+  }
+  kernels::UvRows<float> rows() const {
+    return {u.data(), v.data(), du_dx.data(), dv_dx.data(), du_dy.data(), dv_dy.data(), id.data()};
+  }
+};
+
+Points hostile_points() {
+  Points p;
+  test::Random random(5);
+  const auto real = [&] { return static_cast<float>(random.below(1 << 22)) / (1 << 20) - 2.0F; };
+  for (int i = 0; i < 1003; ++i)
+    p.add(real(), real(), std::ldexp(1.0F + real() * 0.1F, -static_cast<int>(random.below(14))),
+          random.below(5) == 0 ? no_face : 1u);
+  for (const float u : {0.0F, -0.0F, 1.0F, -1e-30F, 1e-40F, 0.5F, 16777217.0F, 1e30F, -1e30F, inf, -inf, nan})
+    for (const float v : {0.0F, 1.0F, nan, inf, -3.5F})
+      for (const float s : {0.0F, 1e-40F, 1e-3F, 1.0F, 1e20F, inf, nan}) p.add(u, v, s);
+  return p;
+}
+
+template <class Source>
+void expect_twins(const Source& source, const Points& p, kernels::Lookup filter) {
+  const std::size_t n = p.u.size();
+  std::vector<float> truth[4], simd[4];
+  kernels::RgbaRows<float> to_truth, to_simd;
+  for (std::size_t k = 0; k < 4; ++k) {
+    truth[k].assign(n, -1), simd[k].assign(n, -2);
+    to_truth.plane[k] = truth[k].data(), to_simd.plane[k] = simd[k].data();
+  }
+  kernels::look_up(source, filter, p.rows(), n, to_truth);
+  test::for_each_simd_target([&](const char* target) {
+    kernels::simd::look_up(source, filter, p.rows(), n, to_simd);
+    for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t i = 0; i < n; ++i)
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(truth[k][i]), std::bit_cast<std::uint32_t>(simd[k][i]))
+            << target << " channel " << k << " u " << p.u[i] << " v " << p.v[i] << " du " << p.du_dx[i]
+            << " gives " << simd[k][i] << ", not " << truth[k][i];
+  });
+}
+
+TEST(TextureLookup, EveryTargetHasTheBitsOfTheScalarTwin) {
+  const Points p = hostile_points();
+  for (const auto filter :
+       {kernels::Lookup::nearest, kernels::Lookup::bilinear, kernels::Lookup::trilinear}) {
+    expect_twins(kernels::CheckerColors<float>{12, {0.7F, 0.3F, 0.2F}, {0.1F, 0, 0.9F}}, p, filter);
+    for (const Wrap u : {Wrap::repeat, Wrap::clamp, Wrap::mirror})
+      for (const Wrap v : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
+        const MipPyramid pyramid = random_pyramid(37, 16, u, v);
+        const auto levels = levels_of(pyramid);
+        expect_twins(kernels::TexelPyramid{levels, static_cast<kernels::EdgeRule>(u),
+                                           static_cast<kernels::EdgeRule>(v)},
+                     p, filter);
+      }
+  }
+}
+
+// The mean of the wave over [a, b], square by square.
+double mean_by_squares(double a, double b) {
+  double sum = 0;
+  for (double k = std::floor(a); k < b; ++k)
+    sum += (std::fmod(std::abs(k), 2.0) == 0 ? 1 : -1) * (std::min(b, k + 1) - std::max(a, k));
+  return sum / (b - a);
+}
+
+TEST(Checkerboard, BoxMeanIsTheSumOverItsSquares) {
+  test::Random random(11);
+  for (int i = 0; i < 10000; ++i) {
+    const double x = (static_cast<double>(random.below(1 << 24)) - (1 << 23)) / (1 << 18);
+    const double half = std::ldexp(1.0 + static_cast<double>(random.below(1000)) / 1000,
+                                   3 - static_cast<int>(random.below(20)));
+    // The oracle adds up to 2 half + 2 pieces, each rounded at the scale of x.
+    EXPECT_NEAR(kernels::square_wave_mean(x, half), mean_by_squares(x - half, x + half),
+                1e-14 * (1 + std::abs(x) / half));
+  }
+}
+
+TEST(Checkerboard, ABoxInsideOneSquareHasExactlyItsColour) {
+  for (const float x : {0.25F, 1.75F, -0.25F, -1e-6F, 1e-6F, 1000.5F, -999.5F})
+    EXPECT_EQ(kernels::square_wave_mean(x, std::abs(x) < 1e-5F ? 1e-7F : 0.2F), kernels::square_wave(x)) << x;
+}
+
+TEST(Checkerboard, ABoxOfTwoSquaresIsGrey) {
+  for (const float x : {0.0F, 0.3F, -7.9F, 12.5F})
+    EXPECT_NEAR(kernels::square_wave_mean(x, 1.0F), 0.0F, 1e-6F);
+  EXPECT_EQ(kernels::square_wave_mean(nan, 1.0F), 0.0F);
+  EXPECT_EQ(kernels::square_wave_mean(3.0F, inf), 0.0F);
+}
+
+// ----- the node
+
+Ref<Image> points_image(Rect window, int samples, float scale, PlaneKind kind = PlaneKind::f32) {
+  auto pattern = std::make_shared<SamplePattern>();
+  pattern->samples = samples;
+  pattern->x.assign(static_cast<std::size_t>(samples), 2048), pattern->y = pattern->x;
+  Frame f{.window = window, .pattern = pattern, .planes = {{"id", PlaneKind::u32}}};
+  for (const char* name : {"uv.u", "uv.v", "uv.du_dx", "uv.dv_dx", "uv.du_dy", "uv.dv_dy"})
+    f.planes.push_back({name, kind});
+  Raster r(f);
+  const auto put = [&](int plane, int s, int x, int y, double v) {
+    if (kind == PlaneKind::f64)
+      r.view().row<double>(plane, s, y)[x - window.x0] = v;
+    else
+      r.view().row<float>(plane, s, y)[x - window.x0] = static_cast<float>(v);
+  };
+  for (int s = 0; s < samples; ++s)
+    for (int y = window.y0; y < window.y1; ++y)
+      for (int x = window.x0; x < window.x1; ++x) {
+        const bool covered = (x + 2 * y + s) % 5 != 0;
+        r.view().row<std::uint32_t>(0, s, y)[x - window.x0] = covered ? 3u : no_face;
+        if (!covered) continue;
+        put(1, s, x, y, 0.013 * x + 0.4), put(2, s, x, y, 0.9 - 0.011 * y + 0.001 * s);
+        put(3, s, x, y, scale), put(4, s, x, y, 0.1 * scale), put(5, s, x, y, -0.1 * scale),
+            put(6, s, x, y, scale);
+      }
+  return std::make_shared<Image>(Image{r});
+}
+
+Ref<Texture> texture(MipPyramid p) { return std::make_shared<Texture>(Texture{std::move(p)}); }
+
+TEST(TextureSample, KeepsTheLawOfTiles) {
+  const auto points = points_image({-3, 5, 61, 40}, 2, 0.02F);
+  for (const auto& t : {texture(random_pyramid(32, 20, Wrap::repeat, Wrap::mirror)),
+                        std::make_shared<const Texture>(Texture{Checker{12, {1, 1, 1}, {0, 0.5, 0}}})})
+    for (const char* filter :
+         {R"({"filter": "nearest"})", R"({"filter": "bilinear"})", R"({"filter": "trilinear"})"})
+      EXPECT_EQ(test::break_of_tile_law(
+                    {nodes::texture_sample(), filter, {{"points", {points}}, {"texture", {t}}}}),
+                "");
+}
+
+TEST(TextureSample, AConstantTextureGivesItsBitsAndNothingWhereNothingIsSeen) {
+  MipPyramid p = random_pyramid(24, 24, Wrap::repeat, Wrap::clamp);
+  for (auto& level : p.levels)
+    for (std::size_t i = 0; i < level.rgba.size(); ++i)
+      level.rgba[i] = std::array{0.1F, 0.7F, 0.33F, 1.0F}[i % 4];
+  const auto points = points_image({0, 0, 40, 9}, 1, 0.07F);
+  const Raster image =
+      test::PixelRun(nodes::texture_sample(), "{}", {{"points", {points}}, {"texture", {texture(p)}}})
+          .whole();
+  for (int y = 0; y < 9; ++y)
+    for (int x = 0; x < 40; ++x) {
+      const bool covered = points->raster.at<std::uint32_t>(0, 0, x, y) != no_face;
+      EXPECT_EQ(image.at<float>(1, 0, x, y), covered ? 0.7F : 0.0F);
+      EXPECT_EQ(image.at<float>(3, 0, x, y), covered ? 1.0F : 0.0F);
+    }
+}
+
+TEST(TextureSample, TexelCentresAreTheTexelsAndRowZeroIsTheTop) {
+  const MipPyramid p = random_pyramid(8, 4, Wrap::repeat, Wrap::repeat);
+  const auto levels = levels_of(p);
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 8; ++i) {
+      const auto c = kernels::bilinear<double>({levels}, levels[0], (i + 0.5) / 8, (j + 0.5) / 4);
+      EXPECT_EQ(c[2], p.levels[0].rgba[static_cast<std::size_t>(j * 8 + i) * 4 + 2]);
+    }
+  Points top;
+  top.add(0.5F / 8, 1.0F - 0.5F / 4, 0);
+  float r = -1;
+  kernels::look_up(kernels::TexelPyramid{levels}, kernels::Lookup::bilinear, top.rows(), 1,
+                   {{&r, nullptr, nullptr, nullptr}});
+  EXPECT_EQ(r, p.levels[0].rgba[0]);
+}
+
+TEST(TextureSample, RepeatBlendsAcrossTheSeam) {
+  const MipPyramid p = random_pyramid(4, 1, Wrap::repeat, Wrap::repeat);
+  const auto levels = levels_of(p);
+  const auto c = kernels::bilinear<double>({levels}, levels[0], 0.0, 0.5);
+  EXPECT_NEAR(c[0], 0.5 * (static_cast<double>(p.levels[0].rgba[0]) + p.levels[0].rgba[12]), 1e-15);
+}
+
+TEST(TextureSample, AFootprintOfTwoTexelsReadsTheNextLevel) {
+  const kernels::TexelLevel base{64, 32, nullptr};
+  for (int k = 0; k < 6; ++k)  // exactly level k, by powers of two
+    EXPECT_EQ(kernels::pyramid_level(std::ldexp(1.0F, k) / 64, 0.0F, 0.0F, 0.25F / 32, base, 6),
+              static_cast<float>(k));
+  EXPECT_EQ(kernels::pyramid_level(0.0F, 0.0F, 0.0F, 0.0F, base, 6), 0.0F);
+  EXPECT_EQ(kernels::pyramid_level(nan, 0.0F, 0.0F, 0.0F, base, 6), 6.0F);
+  EXPECT_EQ(kernels::pyramid_level(0.0F, inf, 0.0F, 0.0F, base, 6), 6.0F);
+}
+
+TEST(TextureSample, LevelErrorStaysBelowItsBound) {
+  for (int i = 0; i < (1 << 16); ++i) {
+    const float x = std::bit_cast<float>(0x00800000u + static_cast<std::uint32_t>(i) * 32749u % 0x7F000000u);
+    ASSERT_NEAR(kernels::log2_of_footprint(x), std::log2(static_cast<double>(x)), 7.3e-6 + 128 * 0x1p-24)
+        << x;
+  }
+}
+
+TEST(TextureSample, DoubleFollowsSingle) {
+  const auto t = texture(random_pyramid(32, 20, Wrap::repeat, Wrap::repeat));
+  const Raster a = test::PixelRun(nodes::texture_sample(), "{}",
+                                  {{"points", {points_image({0, 0, 50, 20}, 1, 0.03F)}}, {"texture", {t}}})
+                       .whole();
+  const Raster b =
+      test::PixelRun(nodes::texture_sample(), "{}",
+                     {{"points", {points_image({0, 0, 50, 20}, 1, 0.03F, PlaneKind::f64)}}, {"texture", {t}}},
+                     Precision::real_double)
+          .whole();
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 50;
+         ++x)  // texel coordinates carry 2^-24 of 32, levels 1e-5; texels differ by 1 at most
+      EXPECT_NEAR(a.value(0, 0, x, y), b.value(0, 0, x, y), 3e-5);
+}
+
+TEST(TextureSample, PlanesThatAreMissingOrTooPreciseAreNamed) {
+  const auto t = texture(random_pyramid(4, 4, Wrap::repeat, Wrap::repeat));
+  const auto code_of = [&](Ref<Image> points) -> std::string {
+    try {
+      test::PixelRun(nodes::texture_sample(), "{}", {{"points", {points}}, {"texture", {t}}});
+    } catch (const NodeError& e) {
+      return e.code;
+    }
+    return "";
+  };
+  EXPECT_EQ(code_of(points_image({0, 0, 2, 2}, 1, 0, PlaneKind::f64)), "narrowing");
+  EXPECT_EQ(code_of(std::make_shared<Image>(Image{Raster(Frame{.window = {0, 0, 2, 2}, .planes = {{"R"}}})})),
+            "missing_plane");
+}
+
+}  // namespace
+}  // namespace frustum
