@@ -19,11 +19,11 @@ struct Setting {
 };
 
 struct LoadOptions {
-  std::vector<Setting> settings;
-  std::optional<Precision> precision;             // above the graph's own
-  std::vector<std::string> library_folders;       // where "lib:name" looks for name.json, in order
-  ParamReader::ToLinear to_linear;                // colours written in a named space
-  std::optional<int> frame;                       // sets the graph parameter "frame", where it has one
+  std::vector<Setting> settings = {};
+  std::optional<Precision> precision = {};             // above the graph's own
+  std::vector<std::string> library_folders = {};       // where "lib:name" looks for name.json, in order
+  ParamReader::ToLinear to_linear = {};                // colours written in a named space
+  std::optional<int> frame = {};                       // sets the graph parameter "frame", where it has one
 };
 
 struct Loaded {

@@ -1,0 +1,220 @@
+#include "runtime/graph/document_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace frustum {
+namespace {
+
+struct InputShape {
+  std::string name;
+  bool list, optional;
+};
+
+std::vector<InputShape> inputs_of(const DocumentNode& node) {
+  std::vector<InputShape> out;
+  if (node.type != nullptr)
+    for (const Port& p : node.type->inputs) out.push_back({p.name, p.list, p.optional});
+  if (node.graph != nullptr)
+    for (const DocumentInput& i : node.graph->inputs) out.push_back({i.name, i.list, i.optional});
+  return out;
+}
+
+std::vector<std::string> params_of(const DocumentNode& node) {
+  std::vector<std::string> out;
+  if (node.type != nullptr)
+    for (const ParamField& f : node.type->params.fields) out.push_back(f.name);
+  if (node.graph != nullptr)
+    for (const WrittenParam& p : node.graph->params) out.push_back(p.name);
+  return out;
+}
+
+std::string one_of(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : fmt::format("one of: {}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+std::string kind_of(const DocumentNode& node) {
+  return node.type != nullptr ? fmt::format("'{}'", node.type->name)
+                              : fmt::format("'{}'", node.graph->file());
+}
+
+void DocumentReader::read_nodes(const Json& file) {
+  if (!file.contains("nodes")) return missing_key("", "nodes", "a graph");
+  const Json* nodes = object_at(file, "nodes", "");
+  if (nodes == nullptr) return;
+  doc_->nodes.reserve(nodes->size());
+  for (const auto& [id, j] : nodes->items()) {
+    const std::string pointer = child_pointer("/nodes", id);
+    if (!good_id(id, pointer, "node")) continue;
+    doc_->node_index.emplace(id, doc_->nodes.size());
+    doc_->nodes.push_back({.id = id, .pointer = pointer});
+    read_node(doc_->nodes.back(), j);
+  }
+}
+
+void DocumentReader::read_node(DocumentNode& node, const Json& j) {
+  if (!j.is_object()) return wrong_type(node.pointer, R"(an object, such as {"type": "..."})", j);
+  read_node_type(node, j);
+  if (j.contains("precision"))
+    node.precision = read_precision(j["precision"], child_pointer(node.pointer, "precision"));
+  read_node_params(node, j);
+  read_overrides(node, j);
+  read_bindings(node, j);
+}
+
+void DocumentReader::read_node_type(DocumentNode& node, const Json& j) {
+  const Json* type = text_at(j, "type", node.pointer);
+  if (!j.contains("type")) missing_key(node.pointer, "type", "a node");
+  const std::string name = type != nullptr ? type->get<std::string>() : "";
+  if (name == "graph") {
+    unknown_keys(j, node.pointer, {"type", "file", "in", "params", "precision", "overrides"},
+                 "a graph used as a node");
+    const Json* file = text_at(j, "file", node.pointer);
+    if (!j.contains("file")) missing_key(node.pointer, "file", "a graph used as a node");
+    if (file != nullptr)
+      node.graph = documents_.open(file->get<std::string>(), doc_->folder, *doc_->text,
+                                   child_pointer(node.pointer, "file"));
+    return;
+  }
+  unknown_keys(j, node.pointer, {"type", "in", "params", "precision"}, "a node");
+  node.type = documents_.registry().find(name);
+  if (node.type != nullptr || type == nullptr) return;
+  std::vector<std::string> names = documents_.registry().names();
+  names.emplace_back("graph");
+  problem({.code = "unknown_type",
+           .pointer = child_pointer(node.pointer, "type"),
+           .message = fmt::format("'{}' is not a node type", name),
+           .expected = "a node type",
+           .got = name,
+           .suggestions = nearest_names(name, names)});
+}
+
+void DocumentReader::read_node_params(DocumentNode& node, const Json& j) {
+  const Json* params = object_at(j, "params", node.pointer);
+  if (params == nullptr) return;
+  const std::string pointer = child_pointer(node.pointer, "params");
+  const bool known_type = node.type != nullptr || node.graph != nullptr;
+  const std::vector<std::string> names = params_of(node);
+  for (const auto& [name, value] : params->items()) {
+    const std::string at = child_pointer(pointer, name);
+    check_dollars(value, at);
+    if (!known_type) continue;
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
+      node.params.push_back({name, at, &value});
+      continue;
+    }
+    problem({.code = "unknown_param",
+             .pointer = at,
+             .message = fmt::format("{} has no parameter '{}'", kind_of(node), name),
+             .expected = one_of(names),
+             .got = name,
+             .suggestions = nearest_names(name, names)},
+            true);
+  }
+}
+
+void DocumentReader::read_overrides(DocumentNode& node, const Json& j) {
+  if (!j.contains("overrides") || (node.type != nullptr)) return;
+  const Json* overrides = object_at(j, "overrides", node.pointer);
+  if (overrides == nullptr) return;
+  const std::string pointer = child_pointer(node.pointer, "overrides");
+  for (const auto& [address, value] : overrides->items()) {
+    const std::string at = child_pointer(pointer, address);
+    check_dollars(value, at);
+    if (node.graph == nullptr) continue;
+    if (address.find(':') != std::string::npos && has_param_address(*node.graph, address)) {
+      node.overrides.push_back({address, at, &value});
+      continue;
+    }
+    const bool own = node.graph->find_param(address) != nullptr;
+    problem({.code = "unknown_address",
+             .pointer = at,
+             .message = own ? fmt::format("'{}' is a parameter of {} itself and stands in \"params\"",
+                                          address, kind_of(node))
+                            : fmt::format("there is no parameter '{}' in {}", address, kind_of(node)),
+             .expected = "NODE:PARAMETER",
+             .got = address,
+             .suggestions =
+                 own ? std::vector<std::string>{} : nearest_names(address, param_addresses(*node.graph))},
+            true);
+  }
+}
+
+// Every "$name" in a value must be a parameter of this graph; "$$" is a '$' of the text itself.
+void DocumentReader::check_dollars(const Json& value, const std::string& pointer) {
+  if (value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i)
+      if (value[i].is_structured() || value[i].is_string())
+        check_dollars(value[i], child_pointer(pointer, i));
+  } else if (value.is_object()) {
+    for (const auto& [key, item] : value.items()) check_dollars(item, child_pointer(pointer, key));
+  } else if (value.is_string()) {
+    const auto& text = value.get_ref<const std::string&>();
+    if (!text.starts_with('$') || text.starts_with("$$")) return;
+    const std::string name = text.substr(1);
+    doc_->params_used.insert(name);
+    if (doc_->find_param(name) != nullptr) return;
+    std::vector<std::string> names;
+    for (const WrittenParam& p : doc_->params) names.push_back("$" + p.name);
+    problem({.code = "unknown_parameter",
+             .pointer = pointer,
+             .message = fmt::format("the graph has no parameter '{}' for '{}'", name, text),
+             .expected = one_of(names),
+             .got = text,
+             .suggestions = nearest_names(text, names)});
+  }
+}
+
+void DocumentReader::read_bindings(DocumentNode& node, const Json& j) {
+  const Json* in = object_at(j, "in", node.pointer);
+  if (node.type == nullptr && node.graph == nullptr) return;
+  const std::vector<InputShape> inputs = inputs_of(node);
+  const std::string pointer = child_pointer(node.pointer, "in");
+  std::vector<bool> given(inputs.size());
+  if (in != nullptr) {
+    for (const auto& [name, value] : in->items()) {
+      const auto found = std::find_if(inputs.begin(), inputs.end(),
+                                      [&name = name](const InputShape& i) { return i.name == name; });
+      const std::string at = child_pointer(pointer, name);
+      if (found != inputs.end()) {
+        const auto index = static_cast<std::size_t>(found - inputs.begin());
+        given[index] = true;
+        read_binding(node, {.input = index, .pointer = at, .links = {}}, value, found->list);
+        continue;
+      }
+      std::vector<std::string> names;
+      for (const InputShape& i : inputs) names.push_back(i.name);
+      problem({.code = "unknown_input",
+               .pointer = at,
+               .message = fmt::format("{} has no input '{}'", kind_of(node), name),
+               .expected = one_of(names),
+               .got = name,
+               .suggestions = nearest_names(name, names)},
+              true);
+    }
+  }
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    if (!given[i] && !inputs[i].optional && (in != nullptr || !j.contains("in")))
+      problem({.code = "missing_input",
+               .pointer = in != nullptr ? pointer : node.pointer,
+               .message = fmt::format("the input '{}' of '{}' is fed by nothing", inputs[i].name, node.id),
+               .expected = inputs[i].name});
+}
+
+void DocumentReader::read_binding(DocumentNode& node, Binding binding, const Json& j, bool list) {
+  if (j.is_array() && !list) return wrong_type(binding.pointer, "one link, not a list", j);
+  if (j.is_array()) {
+    for (std::size_t i = 0; i < j.size(); ++i)
+      binding.links.push_back(read_link(j[i], child_pointer(binding.pointer, i), true));
+  } else {
+    binding.links.push_back(read_link(j, binding.pointer, true));
+  }
+  node.inputs.push_back(std::move(binding));
+}
+
+}  // namespace frustum

@@ -1,0 +1,228 @@
+#include "runtime/graph/document_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <unordered_map>
+
+namespace frustum {
+namespace {
+
+// What a file of pixels can hold. Bits are a channel's; the first is the format's usual depth.
+struct FileFormat {
+  std::string_view extension;
+  std::vector<int> bits;
+  std::vector<std::string> compressions;
+  bool layers;
+};
+
+const std::vector<FileFormat>& file_formats() {
+  static const std::vector<std::string> tiff = {"none", "lzw", "zip", "packbits"};
+  static const std::vector<FileFormat> formats = {
+      {"exr", {16, 32}, {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}, true},
+      {"png", {8, 16}, {}, false},
+      {"tif", {16, 8, 32}, tiff, false},
+      {"tiff", {16, 8, 32}, tiff, false},
+      {"hdr", {32}, {}, false},
+      {"jpg", {8}, {}, false},
+      {"jpeg", {8}, {}, false}};
+  return formats;
+}
+
+std::string extension_of(const std::string& file) {
+  std::string out = std::filesystem::path(file).extension().string();
+  if (!out.empty()) out.erase(0, 1);
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
+// The first "{...}" in a file name that is not {frame}; empty where there is none.
+std::string unknown_placeholder(std::string_view file) {
+  for (std::size_t at; (at = file.find_first_of("{}")) != std::string_view::npos; file.remove_prefix(at)) {
+    if (!file.substr(at).starts_with("{frame}"))
+      return std::string(file.substr(at, file.find('}', at) - at + 1));
+    at += std::string_view("{frame}").size();
+  }
+  return {};
+}
+
+bool leaves_folder(const std::filesystem::path& path) {
+  return path.is_absolute() || (!path.empty() && *path.lexically_normal().begin() == "..");
+}
+
+}  // namespace
+
+void DocumentReader::read_outputs(const Json& file) {
+  const Json* outputs = object_at(file, "outputs", "");
+  if (outputs == nullptr) return;
+  doc_->outputs.reserve(outputs->size());
+  for (const auto& [name, j] : outputs->items()) {
+    const std::string pointer = child_pointer("/outputs", name);
+    if (!good_id(name, pointer, "output")) continue;
+    doc_->outputs.push_back({.name = name, .pointer = pointer});
+    read_output(doc_->outputs.back(), j);
+  }
+  check_same_files();
+}
+
+void DocumentReader::read_output(DocumentOutput& output, const Json& j) {
+  if (!j.is_object())
+    return wrong_type(output.pointer, R"(an object, such as {"from": "node.port", "file": "name.png"})", j);
+  unknown_keys(j, output.pointer, {"from", "layers", "file", "bits", "compression"}, "an output");
+  const bool from = j.contains("from");
+  output.layered = !from && j.contains("layers");
+  if (from && j.contains("layers"))
+    problem({.code = "ambiguous_output",
+             .pointer = child_pointer(output.pointer, "layers"),
+             .message = "an output has either \"from\" or \"layers\"",
+             .expected = "one of: from, layers",
+             .got = "both"},
+            true);
+  if (from)
+    output.layers.push_back({"", read_link(j["from"], child_pointer(output.pointer, "from"), false)});
+  else if (output.layered)
+    read_layers(output, j);
+  else
+    missing_key(output.pointer, "from", "an output, or \"layers\"");
+  read_file(output, j);
+}
+
+void DocumentReader::read_layers(DocumentOutput& output, const Json& j) {
+  const Json* layers = object_at(j, "layers", output.pointer);
+  if (layers == nullptr) return;
+  const std::string pointer = child_pointer(output.pointer, "layers");
+  for (const auto& [name, link] : layers->items()) {
+    const std::string at = child_pointer(pointer, name);
+    const bool plain = name.find_first_of(". ") == std::string::npos;
+    if (name.empty() || (plain && name.size() < 100)) {
+      output.layers.push_back({name, read_link(link, at, false)});
+      continue;
+    }
+    problem({.code = "bad_id",
+             .pointer = at,
+             .message = fmt::format("'{}' cannot name a layer: no dots, no blanks, at most 99 bytes",
+                                    name.substr(0, 60)),
+             .expected = "a layer's name, or \"\" for the main layer",
+             .got = name.substr(0, 60)},
+            true);
+  }
+  if (layers->empty()) wrong_type(pointer, "at least one layer", *layers);
+  if (!j.contains("file")) missing_key(output.pointer, "file", "an output with layers");
+}
+
+void DocumentReader::read_file(DocumentOutput& output, const Json& j) {
+  const Json* file = text_at(j, "file", output.pointer);
+  if (file == nullptr) {
+    for (const char* key : {"bits", "compression"})
+      if (j.contains(key) && !j.contains("file"))
+        missing_key(output.pointer, "file", fmt::format("an output with '{}'", key));
+    return;
+  }
+  output.file = file->get<std::string>();
+  check_file_name(output);
+  check_format(output, j);
+}
+
+void DocumentReader::check_file_name(const DocumentOutput& output) {
+  const std::string pointer = child_pointer(output.pointer, "file");
+  const std::filesystem::path path(output.file);
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+  if (!path.has_filename() || path.stem() == ".." ||
+      std::any_of(output.file.begin(), output.file.end(), is_control))
+    problem({.code = "bad_path",
+             .pointer = pointer,
+             .message = fmt::format("'{}' does not name a file", output.file),
+             .expected = "a file name",
+             .got = output.file});
+  else if (leaves_folder(path))
+    problem({.code = "path_escapes",
+             .pointer = pointer,
+             .message = fmt::format("'{}' leaves the output folder", output.file),
+             .expected = "a path below the output folder",
+             .got = output.file,
+             .suggestions = {path.filename().string()}});
+  if (const std::string unknown = unknown_placeholder(output.file); !unknown.empty())
+    problem({.code = "unknown_placeholder",
+             .pointer = pointer,
+             .message = fmt::format("'{}' is not a placeholder of file names", unknown),
+             .expected = "{frame}",
+             .got = unknown,
+             .suggestions = {"{frame}"}});
+}
+
+void DocumentReader::check_format(DocumentOutput& output, const Json& j) {
+  const std::string extension = extension_of(output.file);
+  const auto& all = file_formats();
+  const auto format =
+      std::find_if(all.begin(), all.end(), [&](const FileFormat& f) { return f.extension == extension; });
+  if (format == all.end()) {
+    std::vector<std::string> names;
+    for (const FileFormat& f : all) names.emplace_back(f.extension);
+    problem({.code = "unknown_extension",
+             .pointer = child_pointer(output.pointer, "file"),
+             .message = extension.empty()
+                            ? fmt::format("'{}' has no extension that says its format", output.file)
+                            : fmt::format("'.{}' is not a picture format that can be written", extension),
+             .expected = fmt::format("one of: {}", fmt::join(names, ", ")),
+             .got = extension,
+             .suggestions = nearest_names(extension, names)});
+    return;
+  }
+  if (!format->layers &&
+      (output.layers.size() > 1 || (output.layers.size() == 1 && !output.layers[0].name.empty())))
+    problem({.code = "one_layer_format",
+             .pointer = child_pointer(output.pointer, "layers"),
+             .message = fmt::format("a .{} file holds the main layer \"\" only", extension),
+             .expected = "an .exr file, or one layer",
+             .got = fmt::format("{} layers", output.layers.size())});
+  if (const auto bits = j.find("bits"); bits != j.end()) {
+    const std::string pointer = child_pointer(output.pointer, "bits"),
+                      expected = fmt::format("{}", fmt::join(format->bits, " or "));
+    if (!bits->is_number_integer())
+      wrong_type(pointer, expected, *bits);
+    else if (std::find(format->bits.begin(), format->bits.end(), *bits) == format->bits.end())
+      problem({.code = "out_of_range",
+               .pointer = pointer,
+               .message = fmt::format("a .{} file has {} bits a channel, not {}", extension, expected,
+                                      quoted_json(*bits)),
+               .expected = expected,
+               .got = quoted_json(*bits)});
+    else
+      output.bits = bits->get<int>();
+  }
+  const Json* compression = text_at(j, "compression", output.pointer);
+  if (compression == nullptr) return;
+  output.compression = compression->get<std::string>();
+  const auto& known = format->compressions;
+  if (std::find(known.begin(), known.end(), output.compression) != known.end()) return;
+  problem({.code = "unknown_choice",
+           .pointer = child_pointer(output.pointer, "compression"),
+           .message = known.empty() ? fmt::format("a .{} file has no choice of compression", extension)
+                                    : fmt::format("'{}' is not a compression of .{} files",
+                                                  output.compression, extension),
+           .expected = known.empty() ? "none" : fmt::format("one of: {}", fmt::join(known, ", ")),
+           .got = output.compression,
+           .suggestions = nearest_names(output.compression, known)});
+}
+
+void DocumentReader::check_same_files() {
+  std::unordered_map<std::string, const DocumentOutput*> first;
+  for (const DocumentOutput& output : doc_->outputs) {
+    if (output.file.empty()) continue;
+    const auto [same, is_new] =
+        first.try_emplace(std::filesystem::path(output.file).lexically_normal().string(), &output);
+    if (is_new) continue;
+    problem({.code = "duplicate_file",
+             .pointer = child_pointer(output.pointer, "file"),
+             .message = fmt::format("'{}' and '{}' write the same file", same->second->name, output.name),
+             .expected = "a file for each output",
+             .got = output.file,
+             .related = {{.pointer = child_pointer(same->second->pointer, "file"),
+                          .message = fmt::format("'{}' writes it here", same->second->name)}}});
+  }
+}
+
+}  // namespace frustum

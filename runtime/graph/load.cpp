@@ -1,0 +1,237 @@
+#include "runtime/graph/load.h"
+
+#include "runtime/graph/check.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+namespace frustum {
+namespace {
+
+constexpr std::size_t absent = ~std::size_t{0};
+
+// From what was checked to a Graph, which holds only what can run.
+class Builder {
+ public:
+  Builder(const Document& doc, Flat& flat, const Checked& checked, const LoadOptions& options,
+          Diagnostics& problems)
+      : doc_(doc),
+        flat_(flat),
+        checked_(checked),
+        options_(options),
+        problems_(problems),
+        index_(flat.nodes.size(), absent) {}
+
+  Graph build() {
+    graph_.title = doc_.title;
+    graph_.file = doc_.file();
+    graph_.seed = doc_.seed;
+    for (const std::size_t i : checked_.order)
+      if (flat_.nodes[i].left_out == nullptr) add_node(i);
+    for (const DocumentOutput& output : doc_.outputs) add_output(output);
+    name_ports(*flat_.top);
+    return std::move(graph_);
+  }
+
+ private:
+  SourcePlace place_of(const SourceText& text, const std::string& pointer) const {
+    const TextPlace at = text.key_place(pointer);
+    return {text.file(), pointer, at.line, at.column};
+  }
+
+  void add_node(std::size_t i) {
+    FlatNode& flat = flat_.nodes[i];
+    GraphNode node{.id = flat.id,
+                   .type = flat.node->type,
+                   .params = flat.params,
+                   .inputs = std::vector<std::vector<Source>>(flat.inputs.size()),
+                   .precision = flat.precision,
+                   .place = place_of(*flat.instance->document->text, flat.node->pointer)};
+    for (std::size_t p = 0; p < flat.inputs.size(); ++p)
+      for (const Edge& edge : flat.inputs[p])
+        if (auto source = source_of(edge, flat.type().inputs[p]))
+          node.inputs[p].push_back(std::move(*source));
+    index_[i] = graph_.nodes.size();
+    graph_.nodes.push_back(std::move(node));
+  }
+
+  std::optional<Source> source_of(const Edge& edge, const Port& port) {
+    if (const auto from = port_of(edge)) return *from;
+    if (edge.kind != Edge::Kind::literal) return std::nullopt;
+    const BufferType* kind = nullptr;
+    for (const BufferType* t : port.types)
+      if (kind == nullptr && t->from_json != nullptr) kind = t;
+    if (kind == nullptr) return std::nullopt;
+    Buffer literal = read_literal(edge, *kind, options_, problems_);
+    return literal ? std::optional<Source>(std::move(literal)) : std::nullopt;
+  }
+
+  std::optional<PortRef> port_of(const Edge& edge) const {
+    if (edge.kind != Edge::Kind::port || index_[edge.from.node] == absent) return std::nullopt;
+    return PortRef{index_[edge.from.node], edge.from.port};
+  }
+
+  void add_output(const DocumentOutput& output) {
+    GraphOutput out{.name = output.name,
+                    .file = output.file,
+                    .bits = output.bits,
+                    .compression = output.compression,
+                    .layers = {},
+                    .place = place_of(*doc_.text, output.pointer)};
+    for (const DocumentLayer& layer : output.layers) {
+      int budget = 1000000;
+      for (const Edge& edge : follow(*flat_.top, layer.from, problems_, budget)) {
+        check_layer(output, edge);
+        if (const auto from = port_of(edge)) out.layers.push_back({layer.name, *from});
+      }
+    }
+    if (out.layers.empty()) return;
+    if (out.file.empty())
+      graph_.port_names.push_back({out.name, out.layers[0].from});
+    else
+      graph_.outputs.push_back(std::move(out));
+  }
+
+  void check_layer(const DocumentOutput& output, const Edge& edge) {
+    const PortFacts facts = facts_of(flat_, checked_, edge);
+    const Instance* left_out = left_out_by(flat_, edge);
+    if (left_out != nullptr && left_out != flat_.top.get()) {
+      report(
+          problems_, *doc_.text,
+          {.code = "left_out",
+           .pointer = edge.link->pointer,
+           .message = fmt::format("{} is left out, since an optional input of '{}' is not given",
+                                  edge.link->text, left_out->prefix.substr(0, left_out->prefix.size() - 1)),
+           .expected = "the optional input",
+           .got = "nothing"});
+    } else if (!output.file.empty() && facts.kind != nullptr && !facts.kind->is_pixels()) {
+      report(problems_, *doc_.text,
+             {.code = "wrong_type",
+              .pointer = edge.link->pointer,
+              .message = fmt::format("{} ({}) cannot be written to '{}': files hold pixels",
+                                     name_of(flat_, edge), facts.kind->name, output.file),
+              .expected = "a port of pixels",
+              .got = std::string(facts.kind->name)});
+    }
+  }
+
+  // "draw.image" for every port of every graph used as a node, and "draw" for its first.
+  void name_ports(const Instance& instance) {
+    for (const Instance::Member& member : instance.members) {
+      if (member.graph == nullptr) continue;
+      const Instance& child = *member.graph;
+      const std::string id = child.prefix.substr(0, child.prefix.size() - 1);
+      bool first = true;
+      for (const DocumentOutput& output : child.document->outputs) {
+        if (output.layered || output.layers.empty()) continue;
+        int budget = 1000000;
+        Diagnostics known;
+        for (const Edge& edge : follow(child, output.layers[0].from, known, budget)) {
+          const auto from = port_of(edge);
+          if (!from) continue;
+          if (first) graph_.port_names.push_back({id, *from});
+          graph_.port_names.push_back({fmt::format("{}.{}", id, output.name), *from});
+        }
+        first = false;
+      }
+      name_ports(child);
+    }
+  }
+
+  const Document& doc_;
+  Flat& flat_;
+  const Checked& checked_;
+  const LoadOptions& options_;
+  Diagnostics& problems_;
+  std::vector<std::size_t> index_;  // of flat nodes in the graph
+  Graph graph_;
+};
+
+// What is right but of no use. Only of the file that the user named: a library serves more graphs than this one.
+void warn(const Document& doc, Diagnostics& problems) {
+  const auto warning = [&](std::string code, std::string pointer, std::string message, std::string expected) {
+    Diagnostic d{.code = std::move(code),
+                 .severity = Severity::warning,
+                 .pointer = std::move(pointer),
+                 .message = std::move(message),
+                 .expected = std::move(expected)};
+    report(problems, *doc.text, std::move(d), true);
+  };
+  if (doc.outputs.empty() && !doc.text->json().contains("outputs"))
+    warning("no_outputs", "", "the graph has no \"outputs\": a run of it writes nothing", "outputs");
+  else
+    for (const DocumentNode& node : doc.nodes)
+      if (!node.used)
+        warning("unused_node", node.pointer, fmt::format("nothing reads '{}', so it does not run", node.id),
+                "a link or an output that reads it");
+  for (const WrittenParam& p : doc.params)
+    if (!doc.params_used.contains(p.name))
+      warning("unused_parameter", p.pointer, fmt::format("nothing takes '${}'", p.name),
+              fmt::format("a parameter that is \"${}\"", p.name));
+  for (const DocumentInput& input : doc.inputs) {
+    if (!input.used)
+      warning("unused_input", input.pointer, fmt::format("nothing reads '${}'", input.name),
+              fmt::format("an input that is \"${}\"", input.name));
+    else if (!input.optional)
+      warning("open_input", input.pointer,
+              fmt::format("'{}' is given only where this graph is used as a node: what needs it does not run",
+                          input.name),
+              "a graph that uses this one as a node");
+  }
+}
+
+using Place = std::tuple<std::string, std::string>;
+
+// Problems that follow from a number that could not be read, and repetitions by a file that is used several times, go. The rest
+// is ordered as it stands in the files, the user's file first.
+void tidy(Diagnostics& problems, const std::string& top) {
+  std::map<Place, bool> not_finite;
+  for (const Diagnostic& d : problems.list())
+    if (d.code == "not_finite") not_finite[{d.file, d.pointer}] = true;
+  const auto follows = [&](const Diagnostic& d) {
+    if (d.code == "not_finite") return false;
+    const auto here = [&](const Related& r) {
+      return not_finite.contains({r.file.empty() ? d.file : r.file, r.pointer});
+    };
+    return not_finite.contains({d.file, d.pointer}) || std::any_of(d.related.begin(), d.related.end(), here);
+  };
+  auto& list = problems.list();
+  if (!not_finite.empty()) std::erase_if(list, follows);
+
+  const auto rank = [&](const Diagnostic& d) {
+    return std::tuple(d.file != top, std::string_view(d.file), d.line, d.column);
+  };
+  std::stable_sort(list.begin(), list.end(),
+                   [&](const Diagnostic& a, const Diagnostic& b) { return rank(a) < rank(b); });
+  std::map<std::tuple<std::string, std::string, std::string, std::string>, bool> seen;
+  std::erase_if(list, [&](const Diagnostic& d) {
+    return !seen.emplace(std::tuple(d.file, d.code, d.pointer, d.message), true).second;
+  });
+}
+
+}  // namespace
+
+Loaded load_graph_text(const std::string& text, const std::string& path, const Registry& registry,
+                       const LoadOptions& options) {
+  Loaded loaded;
+  Documents documents(registry, options.library_folders, loaded.problems);
+  if (const auto doc = documents.read(text, path)) {
+    Flat flat = flatten(*doc, options, loaded.problems);
+    const Checked checked = check(flat, loaded.problems);
+    warn(*doc, loaded.problems);
+    Graph graph = Builder(*doc, flat, checked, options, loaded.problems).build();
+    if (!loaded.problems.has_errors()) loaded.graph = std::move(graph);
+  }
+  tidy(loaded.problems, path);
+  return loaded;
+}
+
+Loaded load_graph(const std::string& path, const Registry& registry, const LoadOptions& options) {
+  return load_graph_text(read_text_file(path), path, registry, options);
+}
+
+}  // namespace frustum

@@ -1,0 +1,179 @@
+// Values of parameters: where they come from, what "$" stands for, and how problems in them find their place.
+#include "runtime/graph/flatten.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace frustum {
+namespace {
+
+// The value of --set ADDR=VALUE: JSON, or the text itself where it is none. Empty where it is JSON with a bad number or
+// too many brackets, which is reported.
+std::optional<Json> setting_value(const Setting& setting, const Document& top, Diagnostics& problems) {
+  Diagnostics found;
+  const auto text = SourceText::read(setting.value, "", found);
+  if (found.empty()) return text->json();
+  const auto is_text = [](const Diagnostic& d) { return d.code == "not_json"; };
+  if (std::any_of(found.list().begin(), found.list().end(), is_text)) return Json(setting.value);
+  for (const Diagnostic& d : found.list())
+    report(problems, *top.text,
+           {.code = d.code,
+            .pointer = "",
+            .message = fmt::format("--set {}: {}", setting.address, d.message),
+            .expected = d.expected,
+            .got = d.got});
+  return std::nullopt;
+}
+
+// Who gave the value that a "$name" stands for.
+void add_giver(Diagnostic& d, const GivenValue& given, const Instance& instance) {
+  const std::string shown = quoted_json(*given.value);
+  if (given.text == nullptr) {
+    d.message += fmt::format(" (from --set {})", given.setting);
+    return;
+  }
+  const TextPlace at = given.text->value_place(given.pointer);
+  const bool same = given.text == instance.document->text.get();
+  d.related.push_back({.pointer = given.pointer,
+                       .message = fmt::format("the value {} stands here", shown),
+                       .line = at.line,
+                       .column = at.column,
+                       .file = same ? std::string() : given.text->file()});
+}
+
+}  // namespace
+
+std::optional<Json> substitute(const Json& value, const Instance& scope, const GivenValue** used) {
+  if (value.is_string()) {
+    const auto& text = value.get_ref<const std::string&>();
+    if (!text.starts_with('$')) return value;
+    if (text.starts_with("$$")) return Json(text.substr(1));
+    const auto found = scope.params.find(std::string_view(text).substr(1));
+    if (found == scope.params.end()) return std::nullopt;
+    if (used != nullptr && *used == nullptr) *used = &found->second;
+    return *found->second.value;
+  }
+  Json out = value;
+  if (value.is_array()) {
+    for (Json& item : out) {
+      if (!item.is_structured() && !item.is_string()) continue;
+      auto replaced = substitute(item, scope, used);
+      if (!replaced) return std::nullopt;
+      item = std::move(*replaced);
+    }
+  } else if (value.is_object()) {
+    for (auto& [key, item] : out.items()) {
+      auto replaced = substitute(item, scope, used);
+      if (!replaced) return std::nullopt;
+      item = std::move(*replaced);
+    }
+  }
+  return out;
+}
+
+void apply_settings(Instance& top, const LoadOptions& options, Diagnostics& problems) {
+  const Document& doc = *top.document;
+  if (options.frame && doc.find_param("frame") != nullptr)
+    top.params["frame"] = {std::make_shared<const Json>(*options.frame),
+                           doc.folder,
+                           nullptr,
+                           {},
+                           fmt::format("frame={}", *options.frame)};
+  for (const Setting& s : options.settings) {
+    if (!has_param_address(doc, s.address)) {
+      report(problems, *doc.text,
+             {.code = "unknown_address",
+              .pointer = "",
+              .message = fmt::format("--set {}: there is no such parameter", s.address),
+              .expected = "a graph parameter, or NODE:PARAMETER",
+              .got = s.address,
+              .suggestions = nearest_names(s.address, param_addresses(doc))});
+      continue;
+    }
+    auto value = setting_value(s, doc, problems);
+    if (!value) continue;
+    const bool own = s.address.find(':') == std::string::npos;
+    (own ? top.params : top.overrides)[s.address] = {std::make_shared<const Json>(std::move(*value)),
+                                                     doc.folder,
+                                                     nullptr,
+                                                     {},
+                                                     fmt::format("{}={}", s.address, s.value)};
+  }
+}
+
+namespace {
+
+// The value of one parameter of one node.
+struct FoundValue {
+  std::optional<Json> value;
+  const GivenValue* giver = nullptr;  // null: written at the node
+  bool overridden = false;
+  bool whole = false;  // all of it comes from the giver
+};
+
+FoundValue find_value(const DocumentNode& node, const std::string& name, const Instance& instance) {
+  FoundValue out;
+  if (!instance.overrides.empty()) {
+    const auto over = instance.overrides.find(fmt::format("{}:{}", node.id, name));
+    if (over != instance.overrides.end()) return {*over->second.value, &over->second, true, true};
+  }
+  const auto written =
+      std::find_if(node.params.begin(), node.params.end(), [&](const auto& p) { return p.name == name; });
+  if (written == node.params.end()) return out;
+  out.value = substitute(*written->value, instance, &out.giver);
+  out.whole = out.giver != nullptr && written->value->is_string();
+  return out;
+}
+
+// Reads one parameter. Its problems stand where the value is written: at the node, or at what overrides it.
+void read_param(const DocumentNode& node, const ParamField& field, const FoundValue& found,
+                const Instance& instance, const LoadOptions& options, void* params, Diagnostics& problems) {
+  const GivenValue* giver = found.giver;
+  const bool elsewhere = found.overridden && giver->text != nullptr;
+  const std::string pointer =
+      elsewhere ? giver->pointer : child_pointer(child_pointer(node.pointer, "params"), field.name);
+  // A path is relative to the file that wrote it; one inside a larger value is taken with that value.
+  Diagnostics read;
+  ParamReader reader(read, pointer, found.whole ? giver->folder : instance.document->folder,
+                     options.to_linear);
+  field.type->read(*found.value, static_cast<char*>(params) + field.offset, field.options, reader);
+  for (Diagnostic& d : read.list()) {
+    if (elsewhere) {
+      report(problems, *giver->text, std::move(d));
+      continue;
+    }
+    if (giver != nullptr) add_giver(d, *giver, instance);
+    report_inside(problems, instance, std::move(d));
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<void> read_params(const DocumentNode& node, const Instance& instance,
+                                  const LoadOptions& options, Diagnostics& problems) {
+  std::shared_ptr<void> params = node.type->default_params();
+  for (const ParamField& field : node.type->params.fields)
+    if (const FoundValue found = find_value(node, field.name, instance); found.value)
+      read_param(node, field, found, instance, options, params.get(), problems);
+  return params;
+}
+
+Buffer read_literal(const Edge& edge, const BufferType& kind, const LoadOptions& options,
+                    Diagnostics& problems) {
+  const GivenValue* giver = nullptr;
+  const auto value = substitute(*edge.literal, *edge.instance, &giver);
+  if (!value) return {};
+  Diagnostics found;
+  ParamReader reader(found, child_pointer(edge.literal_pointer, "value"), edge.instance->document->folder,
+                     options.to_linear);
+  Buffer buffer = kind.from_json(*value, reader);
+  for (Diagnostic& d : found.list()) {
+    if (giver != nullptr) add_giver(d, *giver, *edge.instance);
+    report_inside(problems, *edge.instance, std::move(d));
+  }
+  return found.empty() ? buffer : Buffer();
+}
+
+}  // namespace frustum
