@@ -1,0 +1,43 @@
+#include "runtime/io/image_files.h"
+
+#include "runtime/core/error.h"
+#include "runtime/io/image_module.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace frustum {
+namespace {
+
+// bin/frustum finds lib/frustum/frustum_oiio.so beside it, in a build tree as where it is installed.
+const ImageModule& load() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto path = program.parent_path().parent_path() / "lib" / "frustum" / image_module_file;
+  // Never closed: buffers and exceptions made by its code outlive every call. Local symbols: its copies of ours stay its own.
+  void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (module == nullptr) throw WorldError("no_image_module", fmt::format("cannot load the image library: {}", dlerror()));
+  const auto entry = reinterpret_cast<ImageModuleEntry>(dlsym(module, image_module_symbol));
+  if (entry == nullptr) throw WorldError("no_image_module", fmt::format("{} is not frustum's image library", path.string()));
+  return *entry();
+}
+
+const ImageModule& image_module() {
+  static const ImageModule& loaded = load();
+  return loaded;
+}
+
+}  // namespace
+
+ImageFile read_image(const std::string& path, std::string_view name, int subimage) {
+  return image_module().read(path, name, subimage);
+}
+
+std::unique_ptr<Sink> open_image_sink(const SinkRequest& request) {
+  const SinkPlan plan = plan_sink(request);
+  return image_module().open(request, plan);
+}
+
+}  // namespace frustum

@@ -1,0 +1,20 @@
+// What the image module gives: one object behind one C symbol.
+#pragma once
+
+#include "runtime/io/image_files.h"
+#include "runtime/io/sink_plan.h"
+
+namespace frustum {
+
+class ImageModule {
+ public:
+  virtual ~ImageModule() = default;
+  virtual ImageFile read(const std::string& path, std::string_view name, int subimage) const = 0;
+  virtual std::unique_ptr<Sink> open(const SinkRequest&, const SinkPlan&) const = 0;
+};
+
+constexpr const char* image_module_file = "frustum_oiio.so";
+constexpr const char* image_module_symbol = "frustum_image_module";
+using ImageModuleEntry = const ImageModule* (*)();
+
+}  // namespace frustum

@@ -1,0 +1,22 @@
+#include "runtime/io/image_module.h"
+#include "runtime/io/oiio/reader.h"
+#include "runtime/io/oiio/writer.h"
+
+namespace {
+
+class OiioModule : public frustum::ImageModule {
+ public:
+  frustum::ImageFile read(const std::string& path, std::string_view name, int subimage) const override {
+    return frustum::oiio::read(path, name, subimage);
+  }
+  std::unique_ptr<frustum::Sink> open(const frustum::SinkRequest& request, const frustum::SinkPlan& plan) const override {
+    return frustum::oiio::open(request, plan);
+  }
+};
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const frustum::ImageModule* frustum_image_module() {
+  static const OiioModule module;
+  return &module;
+}

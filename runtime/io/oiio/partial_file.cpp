@@ -1,0 +1,107 @@
+#include "runtime/io/oiio/partial_file.h"
+
+#include "runtime/core/error.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace frustum::oiio {
+namespace {
+
+std::atomic<unsigned> serial{0};
+
+std::string temporary_name(const std::filesystem::path& path) {
+  return (path.parent_path() / fmt::format(".{}.{}-{}.part", path.filename().string(), getpid(), serial++)).string();
+}
+
+}  // namespace
+
+PartialFile::PartialFile(const std::string& path) : IOProxy(path, IOProxy::Write), path_(path), temporary_(temporary_name(path)) {
+  std::error_code error;
+  if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty())
+    std::filesystem::create_directories(folder, error);
+  const int fd = open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (fd < 0) fail(errno);
+  file_ = fdopen(fd, "w+b");
+  if (file_ == nullptr) {
+    const int why = errno;
+    ::close(fd);
+    unlink(temporary_.c_str());
+    fail(why);
+  }
+  std::setvbuf(file_, nullptr, _IOFBF, std::size_t{1} << 20);
+}
+
+PartialFile::~PartialFile() {
+  if (file_ != nullptr) std::fclose(file_);
+  if (!temporary_.empty()) unlink(temporary_.c_str());
+}
+
+void PartialFile::fail(int error) const {
+  throw WorldError("cannot_write_file", fmt::format("cannot write {}: {}", path_, std::strerror(error)));
+}
+
+void PartialFile::check() const {
+  if (error_ != 0) fail(error_);
+}
+
+void PartialFile::commit() {
+  check();
+  if (std::fflush(file_) != 0) fail(errno);
+  const int closed = std::fclose(std::exchange(file_, nullptr));
+  if (closed != 0) fail(errno);
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno);
+  temporary_.clear();
+}
+
+void PartialFile::remember() {
+  if (error_ == 0) error_ = errno != 0 ? errno : EIO;
+}
+
+bool PartialFile::seek(std::int64_t offset) {
+  if (fseeko(file_, static_cast<off_t>(offset), SEEK_SET) != 0) {
+    remember();
+    return false;
+  }
+  at_ = offset;
+  return true;
+}
+
+std::size_t PartialFile::write(const void* from, std::size_t size) {
+  const std::size_t n = std::fwrite(from, 1, size, file_);
+  if (n != size) remember();
+  at_ += static_cast<std::int64_t>(n);
+  size_ = std::max(size_, at_);
+  return n;
+}
+
+std::size_t PartialFile::read(void* to, std::size_t size) {
+  std::fflush(file_);  // between writing and reading, as the C standard asks
+  const std::size_t n = std::fread(to, 1, size, file_);
+  at_ += static_cast<std::int64_t>(n);
+  std::fseek(file_, 0, SEEK_CUR);
+  return n;
+}
+
+std::size_t PartialFile::pwrite(const void* from, std::size_t size, std::int64_t offset) {
+  const std::int64_t back = at_;
+  const std::size_t n = seek(offset) ? write(from, size) : 0;
+  seek(back);
+  return n;
+}
+
+std::size_t PartialFile::pread(void* to, std::size_t size, std::int64_t offset) {
+  const std::int64_t back = at_;
+  const std::size_t n = seek(offset) ? read(to, size) : 0;
+  seek(back);
+  return n;
+}
+
+}  // namespace frustum::oiio

@@ -1,0 +1,229 @@
+#include "runtime/io/oiio/writer.h"
+
+#include "runtime/core/error.h"
+#include "runtime/io/oiio/partial_file.h"
+#include "runtime/io/primaries.h"
+
+#include <Imath/half.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <cstring>
+#include <new>
+
+namespace frustum::oiio {
+namespace {
+
+namespace lib = OIIO;
+using Type = SinkChannel::Type;
+
+lib::TypeDesc type_desc(Type t) {
+  switch (t) {
+    case Type::u8: return lib::TypeDesc::UINT8;
+    case Type::u16: return lib::TypeDesc::UINT16;
+    case Type::half: return lib::TypeDesc::HALF;
+    case Type::u32: return lib::TypeDesc::UINT32;
+    case Type::f32: break;
+  }
+  return lib::TypeDesc::FLOAT;
+}
+
+std::size_t bytes_of(Type t) { return t == Type::u8 ? 1 : t == Type::u16 || t == Type::half ? 2 : 4; }
+
+// round(v most), v cut to [0, 1]; NaN, for which every comparison is false, is 0.
+template <class T>
+T quantized(float v, float most) {
+  return v > 0 ? static_cast<T>(v < 1 ? v * most + 0.5f : most) : T{0};
+}
+
+Imath::half to_half(float v) {
+  constexpr float largest = 65504;
+  return Imath::half(std::isfinite(v) ? std::min(std::max(v, -largest), largest) : v);
+}
+
+template <class T>
+void store(std::byte* to, T v) {
+  std::memcpy(to, &v, sizeof v);
+}
+
+void store_as(Type type, float v, std::byte* to) {
+  switch (type) {
+    case Type::u8: return store(to, quantized<std::uint8_t>(v, 255));
+    case Type::u16: return store(to, quantized<std::uint16_t>(v, 65535));
+    case Type::half: return store(to, to_half(v));
+    case Type::f32: return store(to, v);
+    case Type::u32: return store(to, v > 0 ? static_cast<std::uint32_t>(std::min(v, 4294967040.0f)) : 0u);
+  }
+}
+
+const Primaries* primaries_of(std::string_view space) {
+  for (const Primaries& p : known_primaries)
+    if (p.linear_space == space) return &p;
+  return nullptr;
+}
+
+void describe_color(const Frame& frame, const SinkPlan& plan, lib::ImageSpec& spec) {
+  // In TIFF a colour space makes the library write an EXIF directory, and then files that it cannot read itself (2.4.7).
+  if (frame.color_space.empty() || plan.format == "tiff") return;
+  spec.attribute("frustum:colorSpace", frame.color_space);
+  if (frame.color_space == "srgb") spec.attribute("oiio:ColorSpace", "sRGB");
+  const Primaries* p = primaries_of(frame.color_space);
+  if (p == nullptr) return;
+  spec.attribute("oiio:ColorSpace", "Linear");
+  if (plan.format != "exr") return;
+  std::array<float, 8> xy{};
+  std::transform(p->xy.begin(), p->xy.end(), xy.begin(), [](double v) { return static_cast<float>(v); });
+  spec.attribute("chromaticities", lib::TypeDesc(lib::TypeDesc::FLOAT, 8), xy.data());
+}
+
+lib::ImageSpec make_spec(const SinkRequest& r, const SinkPlan& plan) {
+  const Rect& w = r.region;
+  lib::ImageSpec spec(w.width(), w.height(), static_cast<int>(plan.channels.size()), type_desc(plan.channels[0].type));
+  spec.channelnames.clear();
+  for (const SinkChannel& c : plan.channels) {
+    spec.channelnames.push_back(c.name);
+    spec.channelformats.push_back(type_desc(c.type));
+  }
+  if (std::all_of(spec.channelformats.begin(), spec.channelformats.end(), [&](auto t) { return t == spec.format; }))
+    spec.channelformats.clear();
+  spec.alpha_channel = plan.alpha;
+  if (plan.windows) {
+    spec.x = w.x0, spec.y = w.y0;
+    const Rect& d = r.display_window;
+    spec.full_x = d.x0, spec.full_y = d.y0, spec.full_width = d.width(), spec.full_height = d.height();
+  }
+  if (plan.format == "jpeg") {
+    spec.attribute("compression", plan.compression.empty() ? "jpeg:98" : "jpeg:" + plan.compression.substr(8));
+    spec.attribute("jpeg:subsampling", "4:4:4");
+  } else if (!plan.compression.empty()) {
+    spec.attribute("compression", plan.compression);
+  }
+  const Frame& main = r.layers[static_cast<std::size_t>(plan.channels[0].layer)].frame;
+  if (plan.alpha >= 0 && (plan.straighten || main.alpha == Alpha::straight)) spec.attribute("oiio:UnassociatedAlpha", 1);
+  describe_color(main, plan, spec);
+  spec.attribute("DateTime", "");  // else the library writes the time of day, and equal pictures differ
+  for (const auto& [key, value] : r.metadata) spec.attribute(key, value);
+  return spec;
+}
+
+class FileSink : public Sink {
+ public:
+  FileSink(const SinkRequest& request, const SinkPlan& plan)
+      : plan_(plan), region_(request.region), path_(request.path), file_(request.path),
+        out_(lib::ImageOutput::create(plan.format == "exr" ? "openexr" : plan.format)) {
+    if (!out_) fail(lib::geterror());
+    const lib::ImageSpec spec = make_spec(request, plan);
+    native_ = spec.channelformats.empty() ? spec.format : lib::TypeDesc::UNKNOWN;
+    y_offset_ = spec.y - region_.y0;
+    for (const SinkChannel& c : plan_.channels) {
+      offsets_.push_back(pixel_bytes_);
+      pixel_bytes_ += bytes_of(c.type);
+    }
+    if (!out_->set_ioproxy(&file_)) fail("its writer takes no stream");
+    if (!out_->open(request.path, spec)) fail(out_->geterror());
+  }
+  ~FileSink() override {
+    try {
+      out_.reset();  // may still write, so before the file
+    } catch (...) {  // an unfinished file is removed: what its writer says of it is of no use
+    }
+  }
+
+  void write(std::span<const Tile> layers) override {
+    const Rect band = layers[0].rect();
+    row_bytes_ = pixel_bytes_ * static_cast<std::size_t>(band.width());
+    data_.resize(row_bytes_ * static_cast<std::size_t>(band.height()));
+    tbb::parallel_for(band.y0, band.y1, [&](int y) { fill_row(layers, y); });
+    guarded([&] {
+      return out_->write_scanlines(band.y0 + y_offset_, band.y1 + y_offset_, 0, native_, data_.data());
+    });
+  }
+
+  void finish() override {
+    guarded([&] { return out_->close(); });
+    file_.commit();
+  }
+
+ private:
+  [[noreturn]] void fail(std::string why) const {
+    file_.check();  // says it better
+    while (!why.empty() && why.back() == '\n') why.pop_back();
+    throw WorldError("cannot_write_file", fmt::format("cannot write {}: {}", path_, why));
+  }
+
+  template <class Call>
+  void guarded(Call&& call) {
+    bool done = false;
+    try {
+      done = call();
+    } catch (const std::exception& e) {
+      fail(e.what());
+    }
+    if (!done) fail(out_->geterror());
+    file_.check();
+  }
+
+  void fill_row(std::span<const Tile> layers, int y) {
+    std::byte* row = data_.data() + row_bytes_ * static_cast<std::size_t>(y - layers[0].rect().y0);
+    for (std::size_t c = 0; c < plan_.channels.size(); ++c) {
+      const SinkChannel& channel = plan_.channels[c];
+      const Tile& t = layers[static_cast<std::size_t>(channel.layer)];
+      std::byte* to = row + offsets_[c];
+      switch (t.frame().planes[static_cast<std::size_t>(channel.plane)].kind) {
+        case PlaneKind::f32: convert<float>(t, channel, layers, y, to); break;
+        case PlaneKind::f64: convert<double>(t, channel, layers, y, to); break;
+        case PlaneKind::u32: convert<std::uint32_t>(t, channel, layers, y, to); break;
+      }
+    }
+  }
+
+  template <class T>
+  void convert(const Tile& t, const SinkChannel& channel, std::span<const Tile> layers, int y, std::byte* to) const {
+    const T* from = t.row<const T>(channel.plane, 0, y);
+    const int width = t.rect().width();
+    if constexpr (std::is_same_v<T, std::uint32_t>) {
+      if (channel.type == Type::u32) {
+        for (int x = 0; x < width; ++x, to += pixel_bytes_) store(to, from[x]);
+        return;
+      }
+    }
+    if (plan_.straighten && &channel != &plan_.channels[static_cast<std::size_t>(plan_.alpha)]) {
+      const SinkChannel& a = plan_.channels[static_cast<std::size_t>(plan_.alpha)];
+      const PlaneKind kind = t.frame().planes[static_cast<std::size_t>(a.plane)].kind;
+      const Tile& at = layers[static_cast<std::size_t>(a.layer)];
+      for (int x = 0; x < width; ++x, to += pixel_bytes_) {
+        const double alpha = kind == PlaneKind::f64 ? at.row<const double>(a.plane, 0, y)[x]
+                                                    : static_cast<double>(at.row<const float>(a.plane, 0, y)[x]);
+        const double v = static_cast<double>(from[x]);
+        store_as(channel.type, static_cast<float>(alpha > 0 ? v / alpha : v), to);
+      }
+      return;
+    }
+    for (int x = 0; x < width; ++x, to += pixel_bytes_) store_as(channel.type, static_cast<float>(from[x]), to);
+  }
+
+  SinkPlan plan_;
+  Rect region_;
+  std::string path_;
+  PartialFile file_;
+  std::unique_ptr<lib::ImageOutput> out_;
+  lib::TypeDesc native_;
+  int y_offset_ = 0;
+  std::vector<std::size_t> offsets_;
+  std::size_t pixel_bytes_ = 0, row_bytes_ = 0;
+  std::vector<std::byte> data_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sink> open(const SinkRequest& request, const SinkPlan& plan) {
+  try {
+    return std::make_unique<FileSink>(request, plan);
+  } catch (const std::bad_alloc&) {
+    throw WorldError("out_of_memory", fmt::format("no memory to write {}", request.path));
+  }
+}
+
+}  // namespace frustum::oiio
