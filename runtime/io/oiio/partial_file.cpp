@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 namespace frustum::oiio {
 namespace {
@@ -23,7 +24,7 @@ std::string temporary_name(const std::filesystem::path& path) {
 
 }  // namespace
 
-PartialFile::PartialFile(const std::string& path) : IOProxy(path, IOProxy::Write), path_(path), temporary_(temporary_name(path)) {
+PartialFile::PartialFile(const std::string& path) : path_(path), temporary_(temporary_name(path)) {
   std::error_code error;
   if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty())
     std::filesystem::create_directories(folder, error);
@@ -87,20 +88,6 @@ std::size_t PartialFile::read(void* to, std::size_t size) {
   const std::size_t n = std::fread(to, 1, size, file_);
   at_ += static_cast<std::int64_t>(n);
   std::fseek(file_, 0, SEEK_CUR);
-  return n;
-}
-
-std::size_t PartialFile::pwrite(const void* from, std::size_t size, std::int64_t offset) {
-  const std::int64_t back = at_;
-  const std::size_t n = seek(offset) ? write(from, size) : 0;
-  seek(back);
-  return n;
-}
-
-std::size_t PartialFile::pread(void* to, std::size_t size, std::int64_t offset) {
-  const std::int64_t back = at_;
-  const std::size_t n = seek(offset) ? read(to, size) : 0;
-  seek(back);
   return n;
 }
 

@@ -5,6 +5,7 @@
 #include "runtime/io/primaries.h"
 
 #include <Imath/half.h>
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -108,10 +109,40 @@ lib::ImageSpec make_spec(const SinkRequest& r, const SinkPlan& plan) {
   return spec;
 }
 
+// The library's view of a partial file.
+class Stream : public lib::Filesystem::IOProxy {
+ public:
+  Stream(const std::string& path, PartialFile& file) : IOProxy(path, IOProxy::Write), file_(file) {}
+  const char* proxytype() const override { return "frustum"; }
+  void close() override {}
+  bool opened() const override { return true; }
+  std::int64_t tell() override { return file_.tell(); }
+  bool seek(std::int64_t offset) override { return file_.seek(offset); }
+  std::size_t size() const override { return static_cast<std::size_t>(file_.size()); }
+  std::size_t read(void* to, std::size_t n) override { return file_.read(to, n); }
+  std::size_t write(const void* from, std::size_t n) override { return file_.write(from, n); }
+  std::size_t pread(void* to, std::size_t n, std::int64_t offset) override {
+    return at(offset, [&] { return file_.read(to, n); });
+  }
+  std::size_t pwrite(const void* from, std::size_t n, std::int64_t offset) override {
+    return at(offset, [&] { return file_.write(from, n); });
+  }
+
+ private:
+  template <class Body>
+  std::size_t at(std::int64_t offset, Body&& body) {
+    const std::int64_t back = file_.tell();
+    const std::size_t n = file_.seek(offset) ? body() : 0;
+    file_.seek(back);
+    return n;
+  }
+  PartialFile& file_;
+};
+
 class FileSink : public Sink {
  public:
   FileSink(const SinkRequest& request, const SinkPlan& plan)
-      : plan_(plan), region_(request.region), path_(request.path), file_(request.path),
+      : plan_(plan), region_(request.region), path_(request.path), file_(request.path), stream_(request.path, file_),
         out_(lib::ImageOutput::create(plan.format == "exr" ? "openexr" : plan.format)) {
     if (!out_) fail(lib::geterror());
     const lib::ImageSpec spec = make_spec(request, plan);
@@ -121,7 +152,7 @@ class FileSink : public Sink {
       offsets_.push_back(pixel_bytes_);
       pixel_bytes_ += bytes_of(c.type);
     }
-    if (!out_->set_ioproxy(&file_)) fail("its writer takes no stream");
+    if (!out_->set_ioproxy(&stream_)) fail("its writer takes no stream");
     if (!out_->open(request.path, spec)) fail(out_->geterror());
   }
   ~FileSink() override {
@@ -208,6 +239,7 @@ class FileSink : public Sink {
   Rect region_;
   std::string path_;
   PartialFile file_;
+  Stream stream_;
   std::unique_ptr<lib::ImageOutput> out_;
   lib::TypeDesc native_;
   int y_offset_ = 0;
