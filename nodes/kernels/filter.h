@@ -1,11 +1,13 @@
 #pragma once
 // Reconstruction filters: separable, even, zero beyond their radius.
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "nodes/kernels/elementary.h"
 #include "nodes/kernels/sum.h"
@@ -13,6 +15,10 @@
 namespace frustum::kernels {
 
 enum class FilterKind : std::uint8_t { box, bartlett, gaussian, mitchell };
+constexpr auto choices(FilterKind) {
+  return std::array{std::pair{FilterKind::box, "box"}, std::pair{FilterKind::bartlett, "bartlett"},
+                    std::pair{FilterKind::gaussian, "gaussian"}, std::pair{FilterKind::mitchell, "mitchell"}};
+}
 
 //   box       1 on [-radius, radius), so that abutting boxes share no sample
 //   bartlett  1 - |x| / radius (errata E50: Bartlett, with one t less)
@@ -65,8 +71,8 @@ class FilterCurve {
   R near_[3], outer_[2];
 };
 
-// Divides the weights by their sum, and gives what rounding leaves of 1 to the largest: added up in order
-// they make 1 to within u. All zero stays so. Weights may be negative; a sum of 0 leaves them as they are.
+// Divides the weights by their sum, and gives what rounding leaves of 1 to the largest: added up in order they
+// make 1 to within u. All zero stays so. Weights may be negative; a sum of 0 leaves them as they are.
 template <std::floating_point R>
 void normalize_weights(std::span<R> weights) {
   CompensatedSum<R> sum;

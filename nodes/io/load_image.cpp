@@ -1,0 +1,41 @@
+#include "nodes/io/load_image.h"
+
+#include "nodes/all_nodes.h"
+#include "runtime/core/node_type.h"
+#include "runtime/io/color.h"
+#include "runtime/io/image_files.h"
+
+namespace frustum {
+namespace {
+
+struct Inputs {};
+struct Params {
+  FilePath file;
+  int subimage = 0;
+  std::string space;
+};
+struct Outputs {
+  Ref<Image> image;
+};
+
+Outputs run(const Inputs&, const Params& p, Context& ctx) {
+  if (p.file.empty()) throw NodeError("no_file", "no file is named");
+  const std::string space = p.space.empty() ? p.space : ColorConfig::open({})->resolve(p.space);
+  Raster pixels = read_image(p.file.resolved, p.file.written, p.subimage).raster;
+  if (!space.empty() && space != pixels.frame().color_space) pixels = relabelled(pixels, space);
+  ctx.count("pixels", static_cast<std::uint64_t>(pixels.frame().window.area()));
+  return {std::make_shared<Image>(Image{std::move(pixels)})};
+}
+
+}  // namespace
+
+NodeType nodes::io_load_image() {
+  return node("io.load_image", run)
+      .doc("Reads a picture: PNG, JPEG, EXR, HDR, TIFF and whatever else OpenImageIO knows.")
+      .param("file", &Params::file, "A picture file; its channels become planes, colours stay in the file's space.")
+      .param("subimage", &Params::subimage, "Which part of a file that holds several pictures, from 0.", {.range = at_least(0)})
+      .param("space", &Params::space, "Colour space to take the file's colours as, instead of what the file says.")
+      .output("image", &Outputs::image, "One value a pixel: R G B with premultiplied A, and the file's other channels.");
+}
+
+}  // namespace frustum

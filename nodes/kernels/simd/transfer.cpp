@@ -1,0 +1,85 @@
+#include "nodes/kernels/simd/transfer.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nodes/kernels/simd/transfer.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "nodes/kernels/simd/elementary-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frustum::kernels::simd::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+
+void convert(const ColorMap& map, float* r, float* g, float* b, std::size_t n) {
+  kernels::convert_colors(map, r, g, b, n);
+}
+
+#else
+
+using D = hn::ScalableTag<float>;
+using V = hn::Vec<D>;
+
+HWY_INLINE V encode(const CurveIn<float>& k, V v) {
+  const D d;
+  const V a = hn::Abs(v);
+  const V power = frustum::HWY_NAMESPACE::pow(d, a, hn::Set(d, k.power));
+  const V curved = hn::Sub(hn::Mul(power, hn::Set(d, k.scale)), hn::Set(d, k.offset));
+  return hn::CopySign(hn::IfThenElse(hn::Le(a, hn::Set(d, k.knee)), hn::Mul(a, hn::Set(d, k.slope)), curved), v);
+}
+
+HWY_INLINE V decode(const CurveIn<float>& k, V v) {
+  const D d;
+  const V a = hn::Abs(v);
+  const V base = hn::Mul(hn::Add(a, hn::Set(d, k.offset)), hn::Set(d, k.scale));
+  const V curved = frustum::HWY_NAMESPACE::pow(d, base, hn::Set(d, k.power));
+  return hn::CopySign(hn::IfThenElse(hn::Le(a, hn::Set(d, k.knee)), hn::Mul(a, hn::Set(d, k.slope)), curved), v);
+}
+
+HWY_INLINE V row(const float* m, V x, V y, V z) {
+  const D d;
+  const V xy = hn::Add(hn::Mul(hn::Set(d, m[0]), x), hn::Mul(hn::Set(d, m[1]), y));
+  return hn::Add(xy, hn::Mul(hn::Set(d, m[2]), z));
+}
+
+void convert(const ColorMap& map, float* r, float* g, float* b, std::size_t n) {
+  const D d;
+  const CurveIn<float> in = decoder<float>(map.from), out = encoder<float>(map.to);
+  float m[9];
+  for (std::size_t i = 0; i < 9; ++i) m[i] = static_cast<float>(map.matrix[i]);
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t i = 0;
+  for (; i + lanes <= n; i += lanes) {
+    V x = hn::LoadU(d, r + i), y = hn::LoadU(d, g + i), z = hn::LoadU(d, b + i);
+    if (map.from != Curve::linear) x = decode(in, x), y = decode(in, y), z = decode(in, z);
+    if (!map.same_primaries) {
+      const V u = row(m, x, y, z), v = row(m + 3, x, y, z), w = row(m + 6, x, y, z);
+      x = u, y = v, z = w;
+    }
+    if (map.to != Curve::linear) x = encode(out, x), y = encode(out, y), z = encode(out, z);
+    hn::StoreU(x, d, r + i), hn::StoreU(y, d, g + i), hn::StoreU(z, d, b + i);
+  }
+  if (i < n) kernels::convert_colors(map, r + i, g + i, b + i, n - i);
+}
+
+#endif
+
+}  // namespace
+}  // namespace frustum::kernels::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace frustum::kernels::simd {
+
+HWY_EXPORT(convert);
+
+void convert_colors(const ColorMap& map, float* r, float* g, float* b, std::size_t n) {
+  HWY_DYNAMIC_DISPATCH(convert)(map, r, g, b, n);
+}
+
+}  // namespace frustum::kernels::simd
+#endif

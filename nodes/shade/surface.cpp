@@ -1,0 +1,491 @@
+#include "nodes/shade/surface.h"
+
+#include "nodes/all_nodes.h"
+#include "runtime/buffers/image.h"
+#include "runtime/buffers/light.h"
+#include "runtime/buffers/mesh.h"
+#include "runtime/buffers/real_rows.h"
+#include "runtime/core/node_type.h"
+
+#include <tbb/parallel_for.h>
+
+namespace frustum {
+namespace {
+
+using namespace shading;
+
+enum class Interpolation : std::uint8_t { flat, gouraud, phong };
+constexpr auto choices(Interpolation) {
+  return std::array{std::pair{Interpolation::flat, "flat"}, std::pair{Interpolation::gouraud, "gouraud"},
+                    std::pair{Interpolation::phong, "phong"}};
+}
+enum class Rate : std::uint8_t { sample, pixel };
+constexpr auto choices(Rate) {
+  return std::array{std::pair{Rate::sample, "sample"}, std::pair{Rate::pixel, "pixel"}};
+}
+
+struct Inputs {
+  Tiled<Image> points;
+  Ref<Mesh> mesh;
+  std::optional<Tiled<Image>> albedo;
+  std::optional<Ref<Material>> material;
+  std::vector<Ref<Light>> lights;
+  std::optional<Ref<Camera>> camera;
+};
+struct Params {
+  Interpolation interpolation = Interpolation::phong;
+  Rate rate = Rate::sample;
+  bool two_sided = false;
+};
+struct Outputs {
+  Tiled<Image> color;
+};
+
+// ----- preparation
+
+template <class R>
+Triple<R> narrow(const glm::dvec3& v) {
+  return {static_cast<R>(v.x), static_cast<R>(v.y), static_cast<R>(v.z)};
+}
+
+// What a pixel needs in the precision of the node.
+template <class R>
+struct Shader {
+  Scene<R> scene;
+  std::vector<Received<R>> received;  // flat: by face; Gouraud: by vertex or corner
+  bool by_corner = false;
+  Ref<Column> screen;  // Gouraud: (x_px, y_px, z, 1/w) by vertex
+};
+
+struct State {
+  std::variant<Shader<float>, Shader<double>> shader;
+  Interpolation interpolation;
+  bool once_a_pixel;
+  Ref<Mesh> mesh;
+  int id = -1;
+  std::array<RealPlane, 3> normal{}, position{}, albedo{};
+};
+
+std::vector<Ref<Material>> materials_of(const Inputs& in) {
+  if (in.material) return {*in.material};
+  if (!in.mesh->materials || in.mesh->materials->materials.empty())
+    return {std::make_shared<const Material>()};
+  std::vector<Ref<Material>> all;
+  for (const Material& m : in.mesh->materials->materials) all.push_back({in.mesh->materials, &m});
+  return all;
+}
+
+template <class R>
+Surface<R> surface_of(const Material& m, const glm::dvec3& ambient_light) {
+  Surface<R> s{{narrow<R>(m.ambient * m.diffuse * ambient_light), narrow<R>(m.diffuse), {}},
+               kernels::Highlight::none,
+               kernels::Exponent<R>(m.shininess)};
+  if (m.model == Reflection::lambert || m.specular == glm::dvec3{0}) return s;
+  s.colors.specular = narrow<R>(m.specular);
+  s.highlight = m.model == Reflection::phong ? kernels::Highlight::phong : kernels::Highlight::blinn;
+  return s;
+}
+
+template <class R>
+kernels::LightSource<R> source_of(const Light& light) {
+  const bool is_point = light.kind == Light::Kind::point;
+  return {is_point, narrow<R>(light.color), narrow<R>(is_point ? light.position : -light.direction),
+          narrow<R>(light.attenuation)};
+}
+
+const Camera* camera_of(const Inputs& in) { return in.camera ? in.camera->get() : in.mesh->camera.get(); }
+
+// World positions of the mesh's vertices: kept from project.view on, or its own before it.
+template <class R>
+Ref<Column> world_positions(const Mesh& mesh) {
+  const bool own = mesh.find("world") == nullptr && mesh.space() == Space::world;
+  if (!own && mesh.find("world") == nullptr)
+    throw NodeError("missing_column", "the mesh has no world positions: it has not passed project.view");
+  Ref<Column> c = mesh.real<R>(own ? "position" : "world");
+  if (c->width() != 3) throw NodeError("wrong_column", "world positions have three components");
+  return c;
+}
+
+template <class R>
+Scene<R> make_scene(const Inputs& in, const Params& p) {
+  Scene<R> s;
+  glm::dvec3 ambient{0};
+  for (const Ref<Light>& light : in.lights) {
+    if (light->kind == Light::Kind::ambient)
+      ambient += light->color;
+    else if (light->color != glm::dvec3{0})
+      s.lights.push_back(source_of<R>(*light));
+  }
+  bool needs_eye = p.two_sided;
+  for (const auto& m : materials_of(in)) {
+    s.surfaces.push_back(surface_of<R>(*m, ambient));
+    needs_eye = needs_eye || s.surfaces.back().highlight != kernels::Highlight::none;
+  }
+  if (needs_eye) {
+    const Camera* camera = camera_of(in);
+    if (camera == nullptr)
+      throw NodeError("missing_camera", "highlights and two sides need a camera: link one to 'camera'");
+    s.eye = narrow<R>(camera->eye);
+  }
+  if (s.surfaces.size() > 1 && in.mesh->find("material") != nullptr) {
+    const auto of = in.mesh->at("material").values<std::uint32_t>();
+    for (const std::uint32_t m : of)
+      if (m >= s.surfaces.size())
+        throw NodeError("bad_material", "a face has a material that the mesh does not have");
+    s.surface_of.assign(of.begin(), of.end());
+  }
+  return s;
+}
+
+template <class Body>
+void for_faces(const Mesh& mesh, const Context& ctx, Body&& body) {
+  const auto triangles = mesh.triangles();
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 4096), [&](const auto& range) {
+    ctx.poll();
+    for (std::size_t f = range.begin(); f < range.end(); ++f) body(f, triangles[f]);
+  });
+}
+
+// Lights the vertices, or each corner where a vertex does not look the same from all of its faces.
+template <class R>
+void light_vertices(Shader<R>& shader, const Mesh& mesh, const Context& ctx) {
+  using V3 = glm::vec<3, R>;
+  const Ref<Column> world = world_positions<R>(mesh), normals = mesh.real<R>("normal");
+  if (normals->width() != 3) throw NodeError("wrong_column", "normals have three components");
+  const auto position = world->values<V3>(), normal = normals->values<V3>();
+  const Scene<R>& s = shader.scene;
+  const bool corner_normals = normals->domain() == Domain::corner;
+  shader.by_corner = corner_normals || !s.surface_of.empty() || !s.side.empty();
+  shader.received.resize(shader.by_corner ? 3 * mesh.faces() : mesh.vertices());
+  if (!shader.by_corner) {
+    tbb::parallel_for(std::size_t{0}, mesh.vertices(), [&](std::size_t i) {
+      shader.received[i] = kernels::receive(s.setup(s.surfaces[0]), triple(normal[i]), triple(position[i]));
+    });
+    return;
+  }
+  for_faces(mesh, ctx, [&](std::size_t f, const glm::uvec3& t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t v = t[static_cast<glm::length_t>(c)];
+      const V3 n = normal[corner_normals ? 3 * f + c : v] * s.side_of(f);
+      shader.received[3 * f + c] = kernels::receive(s.setup(s.surface(f)), triple(n), triple(position[v]));
+    }
+  });
+}
+
+template <class R>
+Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
+  using V3 = glm::vec<3, R>;
+  Shader<R> shader{make_scene<R>(in, p), {}, false, {}};
+  Scene<R>& s = shader.scene;
+  const Mesh& mesh = *in.mesh;
+  if (p.two_sided) {
+    const Ref<Column> world = world_positions<R>(mesh);
+    const auto q = world->values<V3>();
+    s.side.resize(mesh.faces());
+    for_faces(mesh, ctx, [&](std::size_t f, const glm::uvec3& t) {
+      s.side[f] = seen_side(q[t[0]], q[t[1]], q[t[2]], s.eye);
+    });
+  }
+  if (p.interpolation == Interpolation::flat) {
+    const Ref<Column> world = world_positions<R>(mesh);
+    const auto q = world->values<V3>();
+    shader.received.resize(mesh.faces());
+    for_faces(mesh, ctx, [&](std::size_t f, const glm::uvec3& t) {
+      shader.received[f] = light_face(s, f, q[t[0]], q[t[1]], q[t[2]]);
+    });
+  }
+  if (p.interpolation == Interpolation::gouraud) {
+    light_vertices(shader, mesh, ctx);
+    if (mesh.space() != Space::screen)
+      throw NodeError("wrong_space", "Gouraud shading needs the mesh in screen space");
+    shader.screen = mesh.real<R>("position");
+  }
+  return shader;
+}
+
+bool needs_position(const std::variant<Shader<float>, Shader<double>>& shader) {
+  return std::visit(
+      [](const auto& sh) {
+        for (const auto& surface : sh.scene.surfaces)
+          if (surface.highlight != kernels::Highlight::none) return true;
+        for (const auto& light : sh.scene.lights)
+          if (light.is_point) return true;
+        return false;
+      },
+      shader);
+}
+
+Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
+  State s{.shader = {}, .interpolation = p.interpolation, .once_a_pixel = false, .mesh = in.mesh};
+  ctx.real([&]<class R>() { s.shader = make_shader<R>(in, p, ctx); });
+  const Frame& from = in.points.frame();
+  s.once_a_pixel = p.rate == Rate::pixel && from.samples() > 1;
+  s.id = in.points.read("id");
+  if (p.interpolation == Interpolation::phong) {
+    if (!from.find("N.x"))
+      throw NodeError("missing_normals",
+                      "the points have no normals: give the mesh some, or use interpolation \"flat\"");
+    s.normal = {read_real(in.points, "N.x", ctx.precision), read_real(in.points, "N.y", ctx.precision),
+                read_real(in.points, "N.z", ctx.precision)};
+    if (needs_position(s.shader))
+      s.position = {read_real(in.points, "P.x", ctx.precision), read_real(in.points, "P.y", ctx.precision),
+                    read_real(in.points, "P.z", ctx.precision)};
+  }
+  if (in.albedo) {
+    const Frame& a = in.albedo->frame();
+    if (a.window != from.window || a.samples() != from.samples())
+      throw NodeError("different_frames", "albedo and points have different windows or samples");
+    s.albedo = {read_real(*in.albedo, "R", ctx.precision), read_real(*in.albedo, "G", ctx.precision),
+                read_real(*in.albedo, "B", ctx.precision)};
+  }
+  const PlaneKind kind = real_kind(ctx.precision);
+  Frame color{.window = from.window,
+              .pattern = from.pattern,
+              .planes = {{"R", kind}, {"G", kind}, {"B", kind}, {"A", kind}},
+              .color_space = std::string(linear_rec709),
+              .alpha = Alpha::premultiplied};
+  return {std::move(s), {std::move(color)}};
+}
+
+// ----- tiles
+
+// The rows of one y: for each number that lighting starts from, a row per sample.
+template <class R>
+struct Rows {
+  std::size_t samples, n;
+  std::vector<const R*> row;             // [number][sample]
+  std::vector<const std::uint32_t*> id;  // [sample]
+  std::size_t numbers = 0;
+
+  void add(const std::vector<const R*>& per_sample) {
+    row.insert(row.end(), per_sample.begin(), per_sample.end());
+    ++numbers;
+  }
+};
+
+// Numbers come in threes: what is lit (normal and, where needed, position; or diffuse and specular light),
+// then albedo.
+template <class R>
+PointRow<R> point_row(const State& s, const std::uint32_t* id, const auto& number) {
+  std::size_t at = 0;
+  const auto three = [&] {
+    at += 3;
+    return std::array<const R*, 3>{number(at - 3), number(at - 2), number(at - 1)};
+  };
+  PointRow<R> row{.id = id};
+  if (s.interpolation == Interpolation::phong) {
+    row.normal = three();
+    if (s.position[0]) row.position = three();
+  } else {
+    row.received.diffuse = three();
+    row.received.specular = three();
+  }
+  if (s.albedo[0]) row.albedo = three();
+  return row;
+}
+
+// Light of flat and Gouraud faces at the samples of a row.
+template <class R>
+void interpolate_row(const State& s, const Shader<R>& shader, const Frame& frame, const std::uint32_t* id,
+                     int sample, int x0, int y, std::size_t n, const std::array<R*, 6>& out) {
+  const auto put = [&](std::size_t x, const Received<R>& r) {
+    for (std::size_t k = 0; k < 3; ++k) out[k][x] = r.diffuse[k], out[3 + k][x] = r.specular[k];
+  };
+  const std::size_t faces = s.mesh->faces();
+  const auto triangles = s.mesh->triangles();
+  std::optional<CornerShares<R>> shares;
+  std::array<const Received<R>*, 3> corner{};
+  std::uint32_t current = no_face;
+  for (std::size_t x = 0; x < n; ++x) {
+    const std::uint32_t f = id[x];
+    if (f >= faces) {
+      put(x, {});
+      continue;
+    }
+    if (s.interpolation == Interpolation::flat) {
+      put(x, shader.received[f]);
+      continue;
+    }
+    if (f != current) {
+      current = f;
+      const glm::uvec3& t = triangles[f];
+      const auto screen = shader.screen->template values<glm::vec<4, R>>();
+      shares.emplace(screen[t[0]], screen[t[1]], screen[t[2]]);
+      for (std::size_t c = 0; c < 3; ++c)
+        corner[c] = &shader.received[shader.by_corner ? 3 * f + c : t[static_cast<glm::length_t>(c)]];
+    }
+    const int px = x0 + static_cast<int>(x);
+    R sx = R(0.5), sy = R(0.5);
+    if (frame.pattern) {
+      const std::size_t at = frame.pattern->index(sample, px, y);
+      sx = static_cast<R>(frame.pattern->x[at]) * R(0x1p-12),
+      sy = static_cast<R>(frame.pattern->y[at]) * R(0x1p-12);
+    }
+    const Triple<R> w = shares->at(static_cast<R>(px) + sx, static_cast<R>(y) + sy);
+    Received<R> r;
+    for (std::size_t k = 0; k < 3; ++k) {
+      r.diffuse[k] =
+          w[0] * corner[0]->diffuse[k] + w[1] * corner[1]->diffuse[k] + w[2] * corner[2]->diffuse[k];
+      r.specular[k] =
+          w[0] * corner[0]->specular[k] + w[1] * corner[1]->specular[k] + w[2] * corner[2]->specular[k];
+    }
+    put(x, r);
+  }
+}
+
+template <class R>
+class Filler {
+ public:
+  Filler(const State& s, const Tile& points, const Tile& albedo, const Tile& out, Arena& arena)
+      : s_(s),
+        shader_(std::get<Shader<R>>(s.shader)),
+        points_(points),
+        albedo_(albedo),
+        out_(out),
+        arena_(arena),
+        n_(static_cast<std::size_t>(out.rect().width())),
+        samples_(static_cast<std::size_t>(out.samples())) {
+    for (std::size_t k = 0; k < 3; ++k) scratch_.light.diffuse[k] = row(), scratch_.light.specular[k] = row();
+    scratch_.side = row();
+    scratch_.tag = arena.take<std::uint32_t>(n_).data();
+    scratch_.present = &present_;
+    const std::size_t numbers = 6 + (s.albedo[0] ? 3 : 0);
+    const bool copies = sizeof(R) == 8 || s.interpolation != Interpolation::phong;
+    if (copies) copies_ = arena.take<R>(numbers * samples_ * n_);
+    if (!s.once_a_pixel) return;
+    left_ = arena.take<std::uint32_t>(samples_ * n_);
+    face_ = arena.take<std::uint32_t>(n_);
+    for (std::size_t i = 0; i < numbers; ++i) mean_.push_back(row());
+    for (auto& plane : color_.plane) plane = row();
+  }
+
+  void fill() {
+    for (int y = out_.rect().y0; y < out_.rect().y1; ++y) {
+      const Rows<R> rows = rows_at(y);
+      if (s_.once_a_pixel)
+        shade_faces(rows, y);
+      else
+        shade_samples(rows, y);
+    }
+  }
+
+ private:
+  R* row() { return arena_.take<R>(n_).data(); }
+
+  Rows<R> rows_at(int y) {
+    Rows<R> rows{samples_, n_, {}, {}};
+    std::size_t copy = 0;
+    const auto next_copy = [&] {
+      return copies_.empty() ? std::span<R>() : copies_.subspan(n_ * copy++, n_);
+    };
+    for (std::size_t k = 0; k < samples_; ++k)
+      rows.id.push_back(points_.row<const std::uint32_t>(s_.id, static_cast<int>(k), y));
+    const auto add = [&](const Tile& tile, RealPlane plane) {
+      std::vector<const R*> per_sample;
+      for (std::size_t k = 0; k < samples_; ++k)
+        per_sample.push_back(real_row<R>(tile, plane, static_cast<int>(k), y, next_copy()));
+      rows.add(per_sample);
+    };
+    if (s_.interpolation == Interpolation::phong) {
+      for (const RealPlane plane : s_.normal) add(points_, plane);
+      if (s_.position[0])
+        for (const RealPlane plane : s_.position) add(points_, plane);
+    } else {
+      std::array<std::vector<const R*>, 6> light;
+      for (std::size_t k = 0; k < samples_; ++k) {
+        std::array<R*, 6> out;
+        for (std::size_t i = 0; i < 6; ++i) light[i].push_back(out[i] = next_copy().data());
+        interpolate_row(s_, shader_, points_.frame(), rows.id[k], static_cast<int>(k), points_.rect().x0, y,
+                        n_, out);
+      }
+      for (const auto& per_sample : light) rows.add(per_sample);
+    }
+    if (s_.albedo[0])
+      for (const RealPlane plane : s_.albedo) add(albedo_, plane);
+    return rows;
+  }
+
+  kernels::ColorRows<R> out_rows(std::size_t sample, int y) const {
+    kernels::ColorRows<R> rows;
+    for (std::size_t k = 0; k < 4; ++k)
+      rows.plane[k] = out_row<R>(out_, static_cast<int>(k), static_cast<int>(sample), y);
+    return rows;
+  }
+
+  void shade_samples(const Rows<R>& rows, int y) {
+    for (std::size_t k = 0; k < samples_; ++k) {
+      const auto number = [&](std::size_t i) { return rows.row[i * samples_ + k]; };
+      shade_row(shader_.scene, point_row<R>(s_, rows.id[k], number), n_, scratch_, out_rows(k, y));
+    }
+  }
+
+  // Once for each face a pixel sees, at the mean of its samples there; all of them get that colour.
+  void shade_faces(const Rows<R>& rows, int y) {
+    for (std::size_t k = 0; k < samples_; ++k) {
+      std::copy_n(rows.id[k], n_, left_.data() + k * n_);
+      for (R* plane : out_rows(k, y).plane)
+        if (plane != nullptr) std::fill_n(plane, n_, R(0));
+    }
+    const std::span<R* const> mean(mean_.data(), rows.numbers);
+    while (take_face_row<R>(left_.data(), samples_, n_, rows.row, face_.data(), mean)) {
+      shade_row(shader_.scene, point_row<R>(s_, face_.data(), [&](std::size_t i) { return mean_[i]; }), n_,
+                scratch_, color_);
+      for (std::size_t k = 0; k < samples_; ++k) {
+        const auto to = out_rows(k, y);
+        for (std::size_t c = 0; c < 4; ++c)
+          if (to.plane[c] != nullptr)
+            put_face_row(rows.id[k], face_.data(), n_, color_.plane[c], to.plane[c]);
+      }
+    }
+  }
+
+  const State& s_;
+  const Shader<R>& shader_;
+  const Tile &points_, &albedo_, &out_;
+  Arena& arena_;
+  std::size_t n_, samples_;
+  RowScratch<R> scratch_;
+  std::vector<std::uint8_t> present_;
+  std::span<R> copies_;
+  std::span<std::uint32_t> left_, face_;
+  std::vector<R*> mean_;
+  kernels::ColorRows<R> color_;
+};
+
+void tile(const State& s, const TilesOf<Inputs>& in, const TilesOf<Outputs>& out, Arena& arena) {
+  const Tile& color = out[&Outputs::color];
+  const Tile points = in[&Inputs::points].part(color.rect());
+  const Tile& given = in[&Inputs::albedo];
+  const Tile albedo = given.empty() ? given : given.part(color.rect());
+  if (std::holds_alternative<Shader<float>>(s.shader))
+    Filler<float>(s, points, albedo, color, arena).fill();
+  else
+    Filler<double>(s, points, albedo, color, arena).fill();
+}
+
+}  // namespace
+
+NodeType nodes::shade_surface() {
+  return pixel_node("shade.surface", prepare, tile)
+      .doc("Lights visible points: Lambert, Phong or Blinn, interpolated flat, by Gouraud or by Phong.")
+      .cite("Gouraud 1971, doi:10.1109/T-C.1971.223313; Phong 1975, doi:10.1145/360825.360839; Blinn 1977")
+      .covers(50, 51, 52, 53, 54, 55, 56, 57, 58, 59)
+      .input("points", &Inputs::points,
+             "Visible points: id, and for phong N and (with highlights or point lights) P.")
+      .input("mesh", &Inputs::mesh,
+             "The mesh the points were seen on; flat and gouraud light its faces and vertices.")
+      .input("albedo", &Inputs::albedo,
+             "Colour that scales the diffuse and ambient light, such as a texture's.")
+      .input("material", &Inputs::material, "One material for everything, instead of the mesh's own.")
+      .input("lights", &Inputs::lights, "Lights; without any, the picture is black.")
+      .input("camera", &Inputs::camera, "Where highlights are seen from; left out, the camera of the mesh.")
+      .param("interpolation", &Params::interpolation,
+             "What is lit: each face once, each vertex (gouraud), or each point with its own normal (phong).")
+      .param("rate", &Params::rate,
+             "Light every sample, or once a pixel and face, at the mean of that face's samples.")
+      .param("two_sided", &Params::two_sided, "Whether faces seen from behind are lit as if turned around.")
+      .output("color", &Outputs::color,
+              "Linear Rec.709, premultiplied; alpha 1 where a point is seen, 0 elsewhere.");
+}
+
+}  // namespace frustum

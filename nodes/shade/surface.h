@@ -1,0 +1,194 @@
+// Shading of visible points: what is lit once per face or corner, how that reaches a sample, and how a row of
+// samples gets its colours. The arithmetic of light itself is nodes/kernels/lighting.h.
+#pragma once
+
+#include "nodes/kernels/simd/lighting.h"
+#include "nodes/kernels/vector.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace frustum::shading {
+
+using kernels::nothing_there;
+using kernels::Received;
+using kernels::Triple;
+
+template <std::floating_point R>
+struct Surface {
+  kernels::SurfaceColors<R> colors;
+  kernels::Highlight highlight = kernels::Highlight::none;
+  kernels::Exponent<R> exponent;
+};
+
+/// Everything that lights a face. Nothing that depends on a pixel.
+template <std::floating_point R>
+struct Scene {
+  std::vector<kernels::LightSource<R>> lights;
+  Triple<R> eye{};
+  std::vector<Surface<R>> surfaces;       ///< at least one
+  std::vector<std::uint32_t> surface_of;  ///< by face; empty: all have the first
+  std::vector<R> side;                    ///< by face +1, or -1 where the eye sees its back; empty: all +1
+
+  kernels::LightSetup<R> setup(const Surface<R>& s) const { return {lights, eye, s.highlight, s.exponent}; }
+  const Surface<R>& surface(std::size_t face) const {
+    return surfaces[surface_of.empty() ? 0 : surface_of[face]];
+  }
+  R side_of(std::size_t face) const { return side.empty() ? R(1) : side[face]; }
+};
+
+template <std::floating_point R>
+Triple<R> triple(const glm::vec<3, R>& v) {
+  return {v.x, v.y, v.z};
+}
+
+/// The normal of a triangle that is counter-clockwise seen from where it points; zero for a triangle without
+/// area.
+template <std::floating_point R>
+glm::vec<3, R> face_normal(const glm::vec<3, R>& a, const glm::vec<3, R>& b, const glm::vec<3, R>& c) {
+  return kernels::normalized_or(kernels::cross(b - a, c - a), glm::vec<3, R>(0));
+}
+
+/// -1 where `eye` lies behind the triangle's plane, +1 in front of it and on it.
+template <std::floating_point R>
+R seen_side(const glm::vec<3, R>& a, const glm::vec<3, R>& b, const glm::vec<3, R>& c, const Triple<R>& eye) {
+  const glm::vec<3, R> to_eye = glm::vec<3, R>(eye[0], eye[1], eye[2]) - a;
+  return kernels::dot(kernels::cross(b - a, c - a), to_eye) < R(0) ? R(-1) : R(1);
+}
+
+/// Flat shading: one value for the whole face, at its centroid with its own normal.
+template <std::floating_point R>
+Received<R> light_face(const Scene<R>& s, std::size_t face, const glm::vec<3, R>& a, const glm::vec<3, R>& b,
+                       const glm::vec<3, R>& c) {
+  const glm::vec<3, R> normal = face_normal(a, b, c) * s.side_of(face), centre = (a + b + c) / R(3);
+  return kernels::receive(s.setup(s.surface(face)), triple(normal), triple(centre));
+}
+
+/// Shares of a triangle's corners at points of the screen, correct in perspective: a_k = b_k / w_k / sum(b_j
+/// / w_j) with b linear on the screen (errata E21). Never negative, sum 1 within rounding; a triangle without
+/// area gives its first corner.
+template <std::floating_point R>
+class CornerShares {
+ public:
+  /// Corners as (x_px, y_px, z, 1/w).
+  CornerShares(const glm::vec<4, R>& a, const glm::vec<4, R>& b, const glm::vec<4, R>& c)
+      : origin_(a), ab_(b.x - a.x, b.y - a.y), ac_(c.x - a.x, c.y - a.y), inverse_w_{a.w, b.w, c.w} {
+    const R area = kernels::difference_of_products(ab_.x, ac_.y, ac_.x, ab_.y);
+    inverse_area_ = area != R(0) ? R(1) / area : R(0);
+  }
+  Triple<R> at(R x, R y) const {
+    const R px = x - origin_.x, py = y - origin_.y;
+    const auto positive = [](R t) { return t > R(0) ? t : R(0); };
+    const R b = positive((px * ac_.y - ac_.x * py) * inverse_area_),
+            c = positive((ab_.x * py - px * ab_.y) * inverse_area_);
+    Triple<R> share{positive(R(1) - b - c) * inverse_w_[0], b * inverse_w_[1], c * inverse_w_[2]};
+    const R sum = share[0] + share[1] + share[2];
+    if (!(sum > R(0))) return {1, 0, 0};
+    for (R& t : share) t = t / sum;
+    return share;
+  }
+
+ private:
+  glm::vec<4, R> origin_;
+  glm::vec<2, R> ab_, ac_;
+  Triple<R> inverse_w_;
+  R inverse_area_;
+};
+
+// ----- rows
+
+/// Light by rows for float goes to the vector kernels, for double to their scalar twins.
+template <std::floating_point R>
+void receive_row(const kernels::LightSetup<R>& setup, const kernels::PointRows<R>& in,
+                 kernels::Selection which, std::size_t n, const kernels::LightRows<R>& out) {
+  if constexpr (sizeof(R) == 4)
+    kernels::simd::receive_light(setup, in, which, n, out);
+  else
+    kernels::receive_light(setup, in, which, n, out);
+}
+
+template <std::floating_point R>
+void reflect_row(const kernels::SurfaceColors<R>& colors, const kernels::LightInput<R>& light,
+                 const std::array<const R*, 3>& albedo, kernels::Selection which, bool keep, std::size_t n,
+                 const kernels::ColorRows<R>& out) {
+  if constexpr (sizeof(R) == 4)
+    kernels::simd::reflect_light(colors, light, albedo, which, keep, n, out);
+  else
+    kernels::reflect_light(colors, light, albedo, which, keep, n, out);
+}
+
+template <std::floating_point R>
+bool take_face_row(std::uint32_t* left, std::size_t samples, std::size_t n, std::span<const R* const> in,
+                   std::uint32_t* face, std::span<R* const> mean) {
+  if constexpr (sizeof(R) == 4)
+    return kernels::simd::take_face(left, samples, n, in, face, mean);
+  else
+    return kernels::take_face(left, samples, n, 0, n, in, face, mean);
+}
+
+template <std::floating_point R>
+void put_face_row(const std::uint32_t* id, const std::uint32_t* face, std::size_t n, const R* from, R* to) {
+  if constexpr (sizeof(R) == 4)
+    kernels::simd::put_face(id, face, n, from, to);
+  else
+    kernels::put_face(id, face, n, from, to);
+}
+
+/// Working memory for one row of n points.
+template <std::floating_point R>
+struct RowScratch {
+  kernels::LightRows<R> light;
+  R* side = nullptr;
+  std::uint32_t* tag = nullptr;
+  std::vector<std::uint8_t>* present = nullptr;  ///< one flag a surface
+};
+
+/// A row of points to shade: either points to light (normal set), or light already received.
+template <std::floating_point R>
+struct PointRow {
+  const std::uint32_t* id = nullptr;
+  std::array<const R*, 3> normal{}, position{};
+  kernels::LightInput<R> received{};
+  std::array<const R*, 3> albedo{};
+};
+
+/// Colours of a row; transparent black where nothing is seen.
+template <std::floating_point R>
+void shade_row(const Scene<R>& s, const PointRow<R>& in, std::size_t n, const RowScratch<R>& scratch,
+               const kernels::ColorRows<R>& out) {
+  kernels::PointRows<R> points{in.normal, in.position, nullptr};
+  if (in.normal[0] != nullptr && !s.side.empty()) {
+    for (std::size_t x = 0; x < n; ++x) scratch.side[x] = in.id[x] < s.side.size() ? s.side[in.id[x]] : R(1);
+    points.sign = scratch.side;
+  }
+  const auto draw = [&](const Surface<R>& surface, kernels::Selection which, bool keep) {
+    const bool lit = in.normal[0] == nullptr;
+    if (!lit) receive_row(s.setup(surface), points, which, n, scratch.light);
+    reflect_row(surface.colors, lit ? in.received : kernels::LightInput<R>(scratch.light), in.albedo, which,
+                keep, n, out);
+  };
+  if (s.surface_of.empty()) return draw(s.surfaces[0], {in.id, nothing_there}, false);
+
+  auto& present = *scratch.present;
+  present.assign(s.surfaces.size(), 0);
+  for (std::size_t x = 0; x < n; ++x) {
+    scratch.tag[x] = in.id[x] < s.surface_of.size() ? s.surface_of[in.id[x]] : nothing_there;
+    if (scratch.tag[x] != nothing_there) present[scratch.tag[x]] = 1;
+  }
+  bool keep =
+      false;  // the first surface drawn also clears what none covers; the last one does where none is present
+  for (std::size_t m = 0; m < s.surfaces.size(); ++m) {
+    if (present[m] == 0 && (keep || m + 1 < s.surfaces.size())) continue;
+    draw(s.surfaces[m], {scratch.tag, static_cast<std::uint32_t>(m)}, keep);
+    keep = true;
+  }
+}
+
+}  // namespace frustum::shading
