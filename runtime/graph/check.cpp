@@ -44,21 +44,26 @@ std::vector<std::size_t> sorted(const Flat& flat) {
   return order;
 }
 
+// Of a longer ring only the end is told.
+constexpr std::size_t most_named = 12;
+
 void report_cycle(const Flat& flat, std::vector<const Edge*> ring, std::vector<std::size_t> nodes,
                   Diagnostics& problems) {
   // Edge i feeds nodes[i] from nodes[i + 1]. It is told from the first of the file, in the direction of the data.
   const auto first = std::min_element(nodes.begin(), nodes.end()) - nodes.begin();
   std::rotate(nodes.begin(), nodes.begin() + first, nodes.end());
   std::rotate(ring.begin(), ring.begin() + first, ring.end());
+  const std::size_t shown = std::min(nodes.size() - 1, most_named);
   std::string path = flat.nodes[nodes[0]].id;
-  for (std::size_t i = nodes.size(); i-- > 0;) path += " -> " + flat.nodes[nodes[i]].id;
+  if (shown < nodes.size() - 1) path += " -> ...";
+  for (std::size_t i = shown + 1; i-- > 0;) path += " -> " + flat.nodes[nodes[i]].id;
   const FlatNode& start = flat.nodes[nodes[0]];
   Diagnostic d{.code = "cycle",
                .pointer = ring[0]->link->pointer,
                .message = fmt::format("these nodes feed each other in a ring: {}", path),
                .expected = "links without a ring",
                .got = path};
-  for (std::size_t i = nodes.size(); i-- > 1;) {
+  for (std::size_t i = shown + 1; i-- > 1;) {
     const FlatNode& node = flat.nodes[nodes[i]];
     const SourceText& text = *node.instance->document->text;
     const TextPlace at = text.value_place(ring[i]->link->pointer);
@@ -160,8 +165,11 @@ class Inference {
       else
         outputs[o].kind = first_of(node, [&](const Port& in) { return in.types == port.types; }).kind;
       outputs[o].spaces = port.spaces;
-      if (port.spaces.empty() && outputs[o].kind != nullptr)
-        outputs[o].spaces = first_of(node, [&](const Port& in) { return in.takes(*outputs[o].kind); }).spaces;
+      if (!port.spaces.empty() || outputs[o].kind == nullptr) continue;
+      // One that does not say keeps the space of the first input of its kind; what is made from another kind, such as a
+      // mesh from a surface, that of the first input that is in one.
+      outputs[o].spaces = first_of(node, [&](const Port& in) { return in.takes(*outputs[o].kind); }).spaces;
+      if (outputs[o].spaces.empty()) outputs[o].spaces = first_space(node);
     }
   }
 
@@ -171,6 +179,13 @@ class Inference {
     for (std::size_t i = 0; i < node.inputs.size(); ++i)
       if (accept(node.type().inputs[i]))
         return node.inputs[i].empty() ? PortFacts{} : facts_of(flat_, checked_, node.inputs[i][0]);
+    return {};
+  }
+
+  Spaces first_space(const FlatNode& node) const {
+    for (const auto& edges : node.inputs)
+      if (!edges.empty())
+        if (const Spaces s = facts_of(flat_, checked_, edges[0]).spaces; !s.empty()) return s;
     return {};
   }
 
@@ -246,17 +261,17 @@ class Inference {
       const Port& port = node.type().inputs[i];
       if (port.list || port.optional) continue;
       for (const Edge& edge : node.inputs[i]) {
-        const Instance* by = left_out_by(flat_, edge);
-        if (by == nullptr) continue;
-        if (node.left_out == nullptr) node.left_out = by;
-        if (node.instance->is_inside(by)) continue;
+        const LeftOut missing = left_out_by(flat_, edge);
+        if (missing.graph == nullptr) continue;
+        if (node.instance->is_inside(missing.graph)) {
+          node.left_out = missing;
+          continue;
+        }
         report_inside(
             problems_, *node.instance,
             {.code = "left_out",
              .pointer = edge.link->pointer,
-             .message = fmt::format(
-                 "{} is left out, since an optional input of '{}' is not given; {}.{} needs it",
-                 name_of(flat_, edge), by->prefix.substr(0, by->prefix.size() - 1), node.id, port.name),
+             .message = fmt::format("{}; '{}.{}' needs it", why_left_out(edge, missing), node.id, port.name),
              .expected = "the optional input",
              .got = "nothing"});
       }
@@ -270,14 +285,23 @@ class Inference {
 
 }  // namespace
 
-const Instance* left_out_by(const Flat& flat, const Edge& edge) {
-  const Instance* by = nullptr;
-  if (edge.kind == Edge::Kind::left_out || edge.kind == Edge::Kind::open) by = edge.instance;
-  if (edge.kind == Edge::Kind::port) by = flat.nodes[edge.from.node].left_out;
-  if (by == nullptr) return nullptr;
+LeftOut left_out_by(const Flat& flat, const Edge& edge) {
+  LeftOut missing;
+  if (edge.kind == Edge::Kind::left_out || edge.kind == Edge::Kind::open)
+    missing = {edge.instance, edge.input};
+  if (edge.kind == Edge::Kind::port) missing = flat.nodes[edge.from.node].left_out;
+  if (missing.graph == nullptr) return missing;
+  // A graph that takes it as an optional input of its own goes without.
   for (const Crossing& c : edge.crossings)
-    if (c.instance->document->inputs[c.input].optional) by = c.instance;
-  return by;
+    if (c.instance->document->inputs[c.input].optional) missing = {c.instance, c.input};
+  return missing;
+}
+
+std::string why_left_out(const Edge& edge, const LeftOut& missing) {
+  const std::string& prefix = missing.graph->prefix;
+  return fmt::format("'{}' is left out, since the optional input '{}' of '{}' is not given", edge.link->text,
+                     missing.graph->document->inputs[missing.input].name,
+                     prefix.substr(0, prefix.size() - 1));
 }
 
 std::string name_of(const Flat& flat, const Edge& edge) {

@@ -18,8 +18,9 @@ struct Checked {
   std::vector<std::vector<PortFacts>> facts;  // [node][output]
 };
 
-// An edge for which something that should be there is left out names the graph whose input is missing; null otherwise.
-const Instance* left_out_by(const Flat&, const Edge&);
+// Whether what an edge leads to is left out, and why.
+LeftOut left_out_by(const Flat&, const Edge&);
+std::string why_left_out(const Edge&, const LeftOut&);
 
 // Sets FlatNode::left_out. Cost: linear in nodes and edges, n log n for the order.
 Checked check(Flat&, Diagnostics&);

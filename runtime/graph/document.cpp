@@ -78,7 +78,8 @@ void report(Diagnostics& problems, const SourceText& text, Diagnostic d, bool at
   d.line = at.line;
   d.column = at.column;
   for (Related& r : d.related) {
-    if (!r.file.empty()) continue;
+    if (r.file == d.file) r.file.clear();
+    if (!r.file.empty() || r.line != 0) continue;
     const TextPlace there = text.value_place(r.pointer);
     r.line = there.line;
     r.column = there.column;

@@ -66,7 +66,7 @@ struct DocumentLayer {
 struct DocumentOutput {
   std::string name, pointer;
   std::vector<DocumentLayer> layers = {};
-  bool layered = false;  // written as "layers": no port
+  bool layered = false;   // written as "layers": no port
   std::string file = {};  // empty: only a port
   int bits = 0;
   std::string compression = {};

@@ -36,12 +36,25 @@ Link DocumentReader::read_link(const Json& j, const std::string& pointer, bool l
   return link;
 }
 
+void DocumentReader::mark_used(const Json& links) {
+  if (links.is_array())
+    for (const Json& link : links) mark_used(link);
+  if (links.is_string()) mark_used(links.get_ref<const std::string&>());
+}
+
+void DocumentReader::mark_used(const std::string& link) {
+  also_used_.push_back(link.substr(0, link.find_first_of("./:")));
+}
+
 void DocumentReader::resolve_links() {
   for (DocumentNode& node : doc_->nodes)
     for (Binding& binding : node.inputs)
       for (Link& link : binding.links) resolve(link, takes_list(node, binding.input));
   for (DocumentOutput& output : doc_->outputs)
     for (DocumentLayer& layer : output.layers) resolve(layer.from, false);
+  for (const std::string& id : also_used_)
+    if (const auto node = doc_->node_index.find(id); node != doc_->node_index.end())
+      doc_->nodes[node->second].used = true;
 }
 
 void DocumentReader::resolve(Link& link, bool list) {
@@ -52,6 +65,7 @@ void DocumentReader::resolve(Link& link, bool list) {
   if (id.find_first_of("/:") != std::string::npos ||
       (dot != std::string::npos && link.text.find('.', dot + 1) != std::string::npos)) {
     const bool inside = id.find('/') != std::string::npos;
+    mark_used(link.text);
     problem({.code = "bad_link",
              .pointer = link.pointer,
              .message = inside
@@ -66,12 +80,14 @@ void DocumentReader::resolve(Link& link, bool list) {
   if (found == doc_->node_index.end()) {
     std::vector<std::string> ids;
     for (const DocumentNode& n : doc_->nodes) ids.push_back(n.id);
+    const std::vector<std::string> near = nearest_names(id, ids);
+    for (const std::string& n : near) mark_used(n);
     problem({.code = "unknown_node",
              .pointer = link.pointer,
              .message = fmt::format("there is no node '{}'", id),
              .expected = "a node of this graph",
              .got = id,
-             .suggestions = nearest_names(id, ids)});
+             .suggestions = near});
     return;
   }
   link.node = found->second;
@@ -92,6 +108,9 @@ void DocumentReader::resolve_input(Link& link, bool list) {
     }
     names.push_back("$" + doc_->inputs[i].name);
   }
+  const std::vector<std::string> near = nearest_names(link.text, names);
+  for (DocumentInput& input : doc_->inputs)
+    input.used |= std::find(near.begin(), near.end(), "$" + input.name) != near.end();
   const bool param = doc_->find_param(name) != nullptr;
   problem(
       {.code = "unknown_input",
@@ -100,7 +119,7 @@ void DocumentReader::resolve_input(Link& link, bool list) {
                         : fmt::format("the graph has no input '{}' for '{}'", name, link.text),
        .expected = names.empty() ? "a graph with inputs" : fmt::format("one of: {}", fmt::join(names, ", ")),
        .got = link.text,
-       .suggestions = nearest_names(link.text, names)});
+       .suggestions = near});
 }
 
 // Fills link.port, or takes link.node away again where there is no such port.

@@ -50,7 +50,7 @@ void DocumentReader::read_nodes(const Json& file) {
   doc_->nodes.reserve(nodes->size());
   for (const auto& [id, j] : nodes->items()) {
     const std::string pointer = child_pointer("/nodes", id);
-    if (!good_id(id, pointer, "node")) continue;
+    if (!good_id(id, pointer, "a node")) continue;
     doc_->node_index.emplace(id, doc_->nodes.size());
     doc_->nodes.push_back({.id = id, .pointer = pointer});
     read_node(doc_->nodes.back(), j);
@@ -161,53 +161,71 @@ void DocumentReader::check_dollars(const Json& value, const std::string& pointer
     if (doc_->find_param(name) != nullptr) return;
     std::vector<std::string> names;
     for (const WrittenParam& p : doc_->params) names.push_back("$" + p.name);
+    const std::vector<std::string> near = nearest_names(text, names);
+    for (const std::string& n : near) doc_->params_used.insert(n.substr(1));  // probably meant
     problem({.code = "unknown_parameter",
              .pointer = pointer,
              .message = fmt::format("the graph has no parameter '{}' for '{}'", name, text),
              .expected = one_of(names),
              .got = text,
-             .suggestions = nearest_names(text, names)});
+             .suggestions = near});
   }
 }
 
 void DocumentReader::read_bindings(DocumentNode& node, const Json& j) {
   const Json* in = object_at(j, "in", node.pointer);
+  if (in != nullptr && node.type == nullptr && node.graph == nullptr)
+    for (const auto& [name, value] : in->items()) mark_used(value);
   if (node.type == nullptr && node.graph == nullptr) return;
   const std::vector<InputShape> inputs = inputs_of(node);
+  std::vector<std::string> names;
+  for (const InputShape& i : inputs) names.push_back(i.name);
   const std::string pointer = child_pointer(node.pointer, "in");
-  std::vector<bool> given(inputs.size());
+  std::set<std::string> given;
   if (in != nullptr) {
     for (const auto& [name, value] : in->items()) {
-      const auto found = std::find_if(inputs.begin(), inputs.end(),
-                                      [&name = name](const InputShape& i) { return i.name == name; });
       const std::string at = child_pointer(pointer, name);
-      if (found != inputs.end()) {
-        const auto index = static_cast<std::size_t>(found - inputs.begin());
-        given[index] = true;
-        read_binding(node, {.input = index, .pointer = at, .links = {}}, value, found->list);
+      const auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end()) {
+        const std::vector<std::string> near = unknown_input(node, name, at, names);
+        given.insert(near.begin(), near.end());  // probably meant
+        mark_used(value);
         continue;
       }
-      std::vector<std::string> names;
-      for (const InputShape& i : inputs) names.push_back(i.name);
-      problem({.code = "unknown_input",
-               .pointer = at,
-               .message = fmt::format("{} has no input '{}'", kind_of(node), name),
-               .expected = one_of(names),
-               .got = name,
-               .suggestions = nearest_names(name, names)},
-              true);
+      given.insert(name);
+      const auto index = static_cast<std::size_t>(found - names.begin());
+      read_binding(node, {.input = index, .pointer = at, .links = {}}, value, inputs[index].list);
     }
   }
-  for (std::size_t i = 0; i < inputs.size(); ++i)
-    if (!given[i] && !inputs[i].optional && (in != nullptr || !j.contains("in")))
+  if (in == nullptr && j.contains("in")) return;
+  for (const InputShape& input : inputs)
+    if (!input.optional && !given.contains(input.name))
       problem({.code = "missing_input",
                .pointer = in != nullptr ? pointer : node.pointer,
-               .message = fmt::format("the input '{}' of '{}' is fed by nothing", inputs[i].name, node.id),
-               .expected = inputs[i].name});
+               .message = fmt::format("the input '{}' of '{}' is fed by nothing", input.name, node.id),
+               .expected = input.name});
+}
+
+// Its suggestions.
+std::vector<std::string> DocumentReader::unknown_input(const DocumentNode& node, const std::string& name,
+                                                       const std::string& at,
+                                                       const std::vector<std::string>& names) {
+  std::vector<std::string> near = nearest_names(name, names);
+  problem({.code = "unknown_input",
+           .pointer = at,
+           .message = fmt::format("{} has no input '{}'", kind_of(node), name),
+           .expected = one_of(names),
+           .got = name,
+           .suggestions = near},
+          true);
+  return near;
 }
 
 void DocumentReader::read_binding(DocumentNode& node, Binding binding, const Json& j, bool list) {
-  if (j.is_array() && !list) return wrong_type(binding.pointer, "one link, not a list", j);
+  if (j.is_array() && !list) {
+    mark_used(j);
+    return wrong_type(binding.pointer, "one link, not a list", j);
+  }
   if (j.is_array()) {
     for (std::size_t i = 0; i < j.size(); ++i)
       binding.links.push_back(read_link(j[i], child_pointer(binding.pointer, i), true));

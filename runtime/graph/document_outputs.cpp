@@ -61,7 +61,7 @@ void DocumentReader::read_outputs(const Json& file) {
   doc_->outputs.reserve(outputs->size());
   for (const auto& [name, j] : outputs->items()) {
     const std::string pointer = child_pointer("/outputs", name);
-    if (!good_id(name, pointer, "output")) continue;
+    if (!good_id(name, pointer, "an output")) continue;
     doc_->outputs.push_back({.name = name, .pointer = pointer});
     read_output(doc_->outputs.back(), j);
   }
@@ -122,22 +122,22 @@ void DocumentReader::read_file(DocumentOutput& output, const Json& j) {
     return;
   }
   output.file = file->get<std::string>();
-  check_file_name(output);
-  check_format(output, j);
+  if (check_file_name(output)) check_format(output, j);
 }
 
-void DocumentReader::check_file_name(const DocumentOutput& output) {
+bool DocumentReader::check_file_name(const DocumentOutput& output) {
   const std::string pointer = child_pointer(output.pointer, "file");
   const std::filesystem::path path(output.file);
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
   if (!path.has_filename() || path.stem() == ".." ||
       std::any_of(output.file.begin(), output.file.end(), is_control))
-    problem({.code = "bad_path",
-             .pointer = pointer,
-             .message = fmt::format("'{}' does not name a file", output.file),
-             .expected = "a file name",
-             .got = output.file});
-  else if (leaves_folder(path))
+    return problem({.code = "bad_path",
+                    .pointer = pointer,
+                    .message = fmt::format("'{}' does not name a file", output.file),
+                    .expected = "a file name",
+                    .got = output.file}),
+           false;
+  if (leaves_folder(path))
     problem({.code = "path_escapes",
              .pointer = pointer,
              .message = fmt::format("'{}' leaves the output folder", output.file),
@@ -151,6 +151,7 @@ void DocumentReader::check_file_name(const DocumentOutput& output) {
              .expected = "{frame}",
              .got = unknown,
              .suggestions = {"{frame}"}});
+  return true;
 }
 
 void DocumentReader::check_format(DocumentOutput& output, const Json& j) {

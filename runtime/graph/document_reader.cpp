@@ -86,7 +86,7 @@ void DocumentReader::read_params(const Json& file) {
   if (params == nullptr) return;
   for (const auto& [name, value] : params->items()) {
     const std::string pointer = child_pointer("/params", name);
-    if (good_id(name, pointer, "graph parameter")) doc_->params.push_back({name, pointer, &value});
+    if (good_id(name, pointer, "a graph parameter")) doc_->params.push_back({name, pointer, &value});
   }
 }
 
@@ -95,7 +95,7 @@ void DocumentReader::read_inputs(const Json& file) {
   if (inputs == nullptr) return;
   for (const auto& [name, j] : inputs->items()) {
     const std::string pointer = child_pointer("/inputs", name);
-    if (good_id(name, pointer, "graph input")) read_input(name, j, pointer);
+    if (good_id(name, pointer, "a graph input")) read_input(name, j, pointer);
   }
 }
 
@@ -187,7 +187,7 @@ bool DocumentReader::good_id(const std::string& id, const std::string& pointer, 
   problem({.code = "bad_id",
            .pointer = pointer,
            .message = fmt::format(
-               "'{}' cannot name a {}: names are letters, digits and '_', and start with no digit", id, what),
+               "'{}' cannot name {}: names are letters, digits and '_', and start with no digit", id, what),
            .expected = "[A-Za-z_][A-Za-z0-9_]*",
            .got = id,
            .suggestions = {as_id(id)}},

@@ -31,7 +31,12 @@ class DocumentReader {
   void read_overrides(DocumentNode&, const Json&);
   void read_bindings(DocumentNode&, const Json&);
   void read_binding(DocumentNode&, Binding, const Json&, bool list);
+  std::vector<std::string> unknown_input(const DocumentNode&, const std::string& name, const std::string& at,
+                                         const std::vector<std::string>& names);
   void check_dollars(const Json& value, const std::string& pointer);
+  // What a wrong part of the file seems to read is not reported as read by nothing.
+  void mark_used(const Json& links);
+  void mark_used(const std::string& id);
 
   // ----- links, once all nodes are known (document_links.cpp)
   Link read_link(const Json&, const std::string& pointer, bool literals);
@@ -45,7 +50,7 @@ class DocumentReader {
   void read_output(DocumentOutput&, const Json&);
   void read_layers(DocumentOutput&, const Json&);
   void read_file(DocumentOutput&, const Json&);
-  void check_file_name(const DocumentOutput&);
+  bool check_file_name(const DocumentOutput&);  // false where it names no file
   void check_format(DocumentOutput&, const Json&);
   void check_same_files();
 
@@ -66,6 +71,7 @@ class DocumentReader {
 
   Documents& documents_;
   std::shared_ptr<Document> doc_;
+  std::vector<std::string> also_used_;  // ids
 };
 
 // "a graph as a node", or the quoted name of its type.

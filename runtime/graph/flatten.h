@@ -62,6 +62,12 @@ struct Edge {
   std::vector<Crossing> crossings = {};  // outermost first
 };
 
+// Why something is not there: an optional input of a graph-as-node that is not given.
+struct LeftOut {
+  const Instance* graph = nullptr;  // null: it is there
+  std::size_t input = 0;            // of the graph's document
+};
+
 struct FlatNode {
   const DocumentNode* node = nullptr;
   const Instance* instance = nullptr;
@@ -69,7 +75,7 @@ struct FlatNode {
   Precision precision = Precision::single;
   std::shared_ptr<void> params;
   std::vector<std::vector<Edge>> inputs;  // one list an input of the type
-  const Instance* left_out = nullptr;     // does not run: an input of that graph is not given
+  LeftOut left_out = {};                  // it does not run
 
   const NodeType& type() const { return *node->type; }
 };

@@ -54,6 +54,8 @@ Json JsonReader::read_value() {
 
 bool JsonReader::too_deep() {
   if (++depth_ <= SourceText::max_depth) return false;
+  // Where the brackets begin says more than 256 times "/0".
+  for (int i = depth_ - 1; i > 2; --i) item_ = out_.items_[item_].parent;
   const std::string limit = fmt::format("at most {} levels", SourceText::max_depth);
   stop("too_deep", here(),
        fmt::format("brackets stand inside each other more than {} levels deep", SourceText::max_depth), limit,

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <map>
+#include <set>
 #include <tuple>
 
 namespace frustum {
@@ -31,7 +31,7 @@ class Builder {
     graph_.file = doc_.file();
     graph_.seed = doc_.seed;
     for (const std::size_t i : checked_.order)
-      if (flat_.nodes[i].left_out == nullptr) add_node(i);
+      if (flat_.nodes[i].left_out.graph == nullptr) add_node(i);
     for (const DocumentOutput& output : doc_.outputs) add_output(output);
     name_ports(*flat_.top);
     return std::move(graph_);
@@ -98,16 +98,14 @@ class Builder {
 
   void check_layer(const DocumentOutput& output, const Edge& edge) {
     const PortFacts facts = facts_of(flat_, checked_, edge);
-    const Instance* left_out = left_out_by(flat_, edge);
-    if (left_out != nullptr && left_out != flat_.top.get()) {
-      report(
-          problems_, *doc_.text,
-          {.code = "left_out",
-           .pointer = edge.link->pointer,
-           .message = fmt::format("{} is left out, since an optional input of '{}' is not given",
-                                  edge.link->text, left_out->prefix.substr(0, left_out->prefix.size() - 1)),
-           .expected = "the optional input",
-           .got = "nothing"});
+    const LeftOut missing = left_out_by(flat_, edge);
+    if (missing.graph != nullptr && missing.graph != flat_.top.get()) {
+      report(problems_, *doc_.text,
+             {.code = "left_out",
+              .pointer = edge.link->pointer,
+              .message = why_left_out(edge, missing),
+              .expected = "the optional input",
+              .got = "nothing"});
     } else if (!output.file.empty() && facts.kind != nullptr && !facts.kind->is_pixels()) {
       report(problems_, *doc_.text,
              {.code = "wrong_type",
@@ -176,7 +174,7 @@ void warn(const Document& doc, Diagnostics& problems) {
     if (!input.used)
       warning("unused_input", input.pointer, fmt::format("nothing reads '${}'", input.name),
               fmt::format("an input that is \"${}\"", input.name));
-    else if (!input.optional)
+    else if (!input.optional && input.kind != nullptr)
       warning("open_input", input.pointer,
               fmt::format("'{}' is given only where this graph is used as a node: what needs it does not run",
                           input.name),
@@ -189,9 +187,9 @@ using Place = std::tuple<std::string, std::string>;
 // Problems that follow from a number that could not be read, and repetitions by a file that is used several times, go. The rest
 // is ordered as it stands in the files, the user's file first.
 void tidy(Diagnostics& problems, const std::string& top) {
-  std::map<Place, bool> not_finite;
+  std::set<Place> not_finite;
   for (const Diagnostic& d : problems.list())
-    if (d.code == "not_finite") not_finite[{d.file, d.pointer}] = true;
+    if (d.code == "not_finite") not_finite.emplace(d.file, d.pointer);
   const auto follows = [&](const Diagnostic& d) {
     if (d.code == "not_finite") return false;
     const auto here = [&](const Related& r) {
@@ -207,9 +205,9 @@ void tidy(Diagnostics& problems, const std::string& top) {
   };
   std::stable_sort(list.begin(), list.end(),
                    [&](const Diagnostic& a, const Diagnostic& b) { return rank(a) < rank(b); });
-  std::map<std::tuple<std::string, std::string, std::string, std::string>, bool> seen;
+  std::set<std::tuple<std::string, std::string, std::string, std::string, int, int>> seen;
   std::erase_if(list, [&](const Diagnostic& d) {
-    return !seen.emplace(std::tuple(d.file, d.code, d.pointer, d.message), true).second;
+    return !seen.emplace(d.file, d.code, d.pointer, d.message, d.line, d.column).second;
   });
 }
 

@@ -20,10 +20,10 @@ struct Setting {
 
 struct LoadOptions {
   std::vector<Setting> settings = {};
-  std::optional<Precision> precision = {};             // above the graph's own
-  std::vector<std::string> library_folders = {};       // where "lib:name" looks for name.json, in order
-  ParamReader::ToLinear to_linear = {};                // colours written in a named space
-  std::optional<int> frame = {};                       // sets the graph parameter "frame", where it has one
+  std::optional<Precision> precision = {};        // above the graph's own
+  std::vector<std::string> library_folders = {};  // where "lib:name" looks for name.json, in order
+  ParamReader::ToLinear to_linear = {};           // colours written in a named space
+  std::optional<int> frame = {};                  // sets the graph parameter "frame", where it has one
 };
 
 struct Loaded {
@@ -35,6 +35,7 @@ struct Loaded {
 Loaded load_graph(const std::string& path, const Registry&, const LoadOptions& = {});
 
 // The same from text; `path` is what relative files start from and what messages name. Cost: linear in the text.
-Loaded load_graph_text(const std::string& text, const std::string& path, const Registry&, const LoadOptions& = {});
+Loaded load_graph_text(const std::string& text, const std::string& path, const Registry&,
+                       const LoadOptions& = {});
 
 }  // namespace frustum

@@ -105,9 +105,15 @@ void apply_settings(Instance& top, const LoadOptions& options, Diagnostics& prob
 
 namespace {
 
+// Whether substitute() would change the value or fail.
+bool takes_parameters(const Json& value) {
+  if (value.is_string()) return value.get_ref<const std::string&>().starts_with('$');
+  return value.is_structured() && std::any_of(value.begin(), value.end(), takes_parameters);
+}
+
 // The value of one parameter of one node.
 struct FoundValue {
-  std::optional<Json> value;
+  std::shared_ptr<const Json> value;
   const GivenValue* giver = nullptr;  // null: written at the node
   bool overridden = false;
   bool whole = false;  // all of it comes from the giver
@@ -117,12 +123,17 @@ FoundValue find_value(const DocumentNode& node, const std::string& name, const I
   FoundValue out;
   if (!instance.overrides.empty()) {
     const auto over = instance.overrides.find(fmt::format("{}:{}", node.id, name));
-    if (over != instance.overrides.end()) return {*over->second.value, &over->second, true, true};
+    if (over != instance.overrides.end()) return {over->second.value, &over->second, true, true};
   }
   const auto written =
       std::find_if(node.params.begin(), node.params.end(), [&](const auto& p) { return p.name == name; });
   if (written == node.params.end()) return out;
-  out.value = substitute(*written->value, instance, &out.giver);
+  if (!takes_parameters(*written->value)) {
+    out.value = {std::shared_ptr<const Json>(),
+                 written->value};  // not owned: the document outlives the reading
+  } else if (auto value = substitute(*written->value, instance, &out.giver)) {
+    out.value = std::make_shared<const Json>(std::move(*value));
+  }
   out.whole = out.giver != nullptr && written->value->is_string();
   return out;
 }

@@ -194,8 +194,13 @@ NodeType type() {
 }  // namespace homogeneous
 
 namespace pattern {
+enum class Kind : std::uint8_t { grid, sobol };
+constexpr auto choices(Kind) {
+  return std::array{std::pair{Kind::grid, "grid"}, std::pair{Kind::sobol, "sobol"}};
+}
 struct Params {
   int samples = 4;
+  Kind kind = Kind::grid;
 };
 struct Outputs {
   Ref<SamplePattern> pattern;
@@ -203,6 +208,7 @@ struct Outputs {
 NodeType type() {
   return stand_in<None, Params, Outputs>("supersample.pattern")
       .param("samples", &Params::samples, "", {.range = between(1, 4096)})
+      .param("kind", &Params::kind, "")
       .output("pattern", &Outputs::pattern, "");
 }
 }  // namespace pattern
@@ -276,6 +282,21 @@ NodeType type() {
 }
 }  // namespace surface
 
+namespace convert {
+struct Inputs {
+  Tiled<Image> image;
+};
+struct Params {
+  std::string to = "srgb";
+};
+NodeType type() {
+  return pixel_stand_in<Inputs, Params, ImageOut>("color.convert")
+      .input("image", &Inputs::image, "")
+      .param("to", &Params::to, "")
+      .output("image", &ImageOut::image, "");
+}
+}  // namespace convert
+
 namespace statistics {
 struct Inputs {
   Ref<Image> image;
@@ -295,9 +316,10 @@ NodeType type() {
 const Registry& stand_in_nodes() {
   static const Registry registry = [] {
     std::vector<NodeType> types;
-    for (NodeType (*type)() : {load_patches::type, camera::type, light::type, affine::type, tessellate::type,
-                               view, perspective, viewport, backface, homogeneous::type, pattern::type,
-                               triangles::type, sample::type, checker::type, surface::type, statistics::type})
+    for (NodeType (*type)() :
+         {load_patches::type, camera::type, light::type, affine::type, tessellate::type, view, perspective,
+          viewport, backface, homogeneous::type, pattern::type, triangles::type, sample::type, checker::type,
+          surface::type, convert::type, statistics::type})
       types.push_back(type());
     return Registry(std::move(types));
   }();
