@@ -1,6 +1,6 @@
 #pragma once
-// Affine maps that carry their inverse along. Each elementary map knows its inverse from its structure, and the
-// inverse of a product is the product of the inverses reversed: nothing is ever solved for, nothing lost.
+// Affine maps that carry their inverse along. Each elementary map knows its inverse from its structure, and
+// the inverse of a product is the product of the inverses reversed: nothing is ever solved for, nothing lost.
 
 #include <array>
 #include <cmath>
@@ -44,8 +44,8 @@ inline glm::dmat4 matrix_of(const Affine& a) {
   return m;
 }
 
-// Takes normals along: the transpose of the inverse, from the structure, whatever the scale. The result is not of
-// unit length, and keeps its side of the surface under reflections.
+// Takes normals along: the transpose of the inverse, from the structure, whatever the scale. The result is
+// not of unit length, and keeps its side of the surface under reflections.
 inline glm::dmat3 normal_matrix(const Affine& a) { return glm::transpose(a.inverse_linear); }
 
 // Whether the map turns a right hand into a left one; exact sign of the determinant.
@@ -90,8 +90,8 @@ inline Affine rotation_of(const glm::dmat3& orthonormal) {
   return a;
 }
 
-// The rotation of the quaternion w + x i + y j + z k, of any length but 0 (then nothing). Dividing by the squared
-// length instead of normalising keeps quarter turns such as (1, 1, 0, 0) exact.
+// The rotation of the quaternion w + x i + y j + z k, of any length but 0 (then nothing). Dividing by the
+// squared length instead of normalising keeps quarter turns such as (1, 1, 0, 0) exact.
 inline std::optional<Affine> quaternion_rotation(double w, const glm::dvec3& v) {
   const double largest = largest_component(glm::dvec4(v, w));
   if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
@@ -107,9 +107,10 @@ inline std::optional<Affine> quaternion_rotation(double w, const glm::dvec3& v) 
   return rotation_of(m);
 }
 
-// Counter-clockwise seen against the axis, through the quaternion of half the angle, which divides its own length
-// out: |R^T R - I| stays below 8 u, where Rodrigues' formula with a rounded axis reaches 19 u. Multiples of 90 degrees
-// about a coordinate axis have entries 0, 1 and -1 exactly. Nothing where the axis has no direction.
+// Counter-clockwise seen against the axis, through the quaternion of half the angle, which divides its own
+// length out: |R^T R - I| stays below 8 u, where Rodrigues' formula with a rounded axis reaches 19 u.
+// Multiples of 90 degrees about a coordinate axis have entries 0, 1 and -1 exactly. Nothing where the axis
+// has no direction.
 inline std::optional<Affine> rotation(const glm::dvec3& axis, double degrees) {
   const auto unit = normalized(axis);
   if (!unit || !std::isfinite(degrees)) return std::nullopt;
@@ -148,15 +149,15 @@ inline std::optional<Affine> euler_rotation(const glm::dvec3& degrees, EulerOrde
   return all;
 }
 
-// How far three Euler angles are from gimbal lock: |cos| of the middle turn, the Jacobian's determinant. At 0 the
-// first and the last turn are about the same axis, and one degree of freedom is gone; below about 1e-6 they are
-// no longer told apart in single precision.
+// How far three Euler angles are from gimbal lock: |cos| of the middle turn, the Jacobian's determinant. At 0
+// the first and the last turn are about the same axis, and one degree of freedom is gone; below about 1e-6
+// they are no longer told apart in single precision.
 inline double gimbal_freedom(const glm::dvec3& degrees, EulerOrder order) {
   return std::fabs(sin_cos_degrees(degrees[axes_of(order)[1]]).cos);
 }
 
-// A map given as a matrix that acts on column vectors. Nothing where the last row is not 0 0 0 1, a number is not
-// finite, or the linear part is singular, which is decided exactly.
+// A map given as a matrix that acts on column vectors. Nothing where the last row is not 0 0 0 1, a number is
+// not finite, or the linear part is singular, which is decided exactly.
 inline std::optional<Affine> affine_from_matrix(const glm::dmat4& m) {
   if (m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1) return std::nullopt;
   Affine a;

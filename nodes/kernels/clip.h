@@ -2,9 +2,11 @@
 // Clipping convex polygons against the view volume, in homogeneous coordinates before the divide by w.
 //
 // Three promises that the plain Sutherland-Hodgman loop does not keep:
-//   - A crossing is measured from its inside end, so the two triangles that share an edge compute the same bits
+//   - A crossing is measured from its inside end, so the two triangles that share an edge compute the same
+//   bits
 //     whichever way each one walks it. (Plainly: 92 % of edges differ, and cracks open.)
-//   - A new vertex lies inside every plane it was cut by: its coordinate is set to the plane, not left to rounding.
+//   - A new vertex lies inside every plane it was cut by: its coordinate is set to the plane, not left to
+//   rounding.
 //     (Plainly: 30 % test as outside.) So clipping what was clipped changes nothing.
 //   - Nothing is divided by w.
 // Source: Sutherland & Hodgman 1974, CACM 17:32; homogeneous form, Blinn & Newell 1978.
@@ -35,14 +37,15 @@ R clip_distance(const ClipPlane& plane, const glm::vec<4, R>& p) {
   return side + static_cast<R>(plane.bound) * p.w;
 }
 
-// The view volume -w <= x, y, z <= w, near plane first; reversed depth has 0 <= z <= w. The guard band widens x and y.
+// The view volume -w <= x, y, z <= w, near plane first; reversed depth has 0 <= z <= w. The guard band widens
+// x and y.
 inline std::array<ClipPlane, 6> view_volume(bool reversed_z, double guard_band = 1) {
   const ClipPlane low{2, 1, reversed_z ? 0.0 : 1.0}, high{2, -1, 1};
   return {reversed_z ? high : low, reversed_z ? low : high, ClipPlane{0, 1, guard_band},
           {0, -1, guard_band},     {1, 1, guard_band},      {1, -1, guard_band}};
 }
 
-// Bit i is set where p lies outside plane i. For a NaN, and where a difference is not a number, all of them.
+// Bit i is set where p lies outside plane i, or where its distance is NaN.
 template <std::floating_point R>
 std::uint8_t outcode(const std::array<ClipPlane, 6>& planes, const glm::vec<4, R>& p) {
   unsigned code = 0;
@@ -50,15 +53,27 @@ std::uint8_t outcode(const std::array<ClipPlane, 6>& planes, const glm::vec<4, R
   return static_cast<std::uint8_t>(code);
 }
 
+// The same code for a whole view volume, without the table of planes. Requires that w is not NaN.
+template <std::floating_point R>
+std::uint8_t volume_outcode(bool reversed_z, R guard_band, const glm::vec<4, R>& p) {
+  const auto bit = [](bool inside, unsigned i) { return inside ? 0U : 1U << i; };
+  const R band = guard_band * p.w;
+  const bool low = (reversed_z ? p.z : p.z + p.w) >= 0, high = p.w - p.z >= 0;
+  return static_cast<std::uint8_t>(bit(reversed_z ? high : low, 0) | bit(reversed_z ? low : high, 1) |
+                                   bit(p.x + band >= 0, 2) | bit(band - p.x >= 0, 3) |
+                                   bit(p.y + band >= 0, 4) | bit(band - p.y >= 0, 5));
+}
+
 // A corner of a clipped triangle: where it is, and what it is of the three corners it comes from.
 template <std::floating_point R>
 struct ClipVertex {
   glm::vec<4, R> p;
   glm::dvec3 weights;  // of the source corners, not negative, sum 1 up to rounding
+  int corner = -1;     // which source corner it is itself; -1: a new vertex, even if its weights round to one
 };
 
-// A triangle cut by six planes has at most nine corners. Should rounding make a ring not quite convex, a cut may
-// add as many as half its corners: 3, 4, 6, 9, 13, 19, 28.
+// A triangle cut by six planes has at most nine corners. Should rounding make a ring not quite convex, a cut
+// may add as many as half its corners: 3, 4, 6, 9, 13, 19, 28.
 template <std::floating_point R>
 struct ClipRing {
   std::array<ClipVertex<R>, 28> vertex;
@@ -66,16 +81,16 @@ struct ClipRing {
   void push(const ClipVertex<R>& v) { vertex[size++] = v; }
 };
 
-// Where the edge from `in` (distance >= 0) to `out` (distance < 0) meets planes[k], snapped to be inside it and all
-// planes before it. A function of the two ends alone: no matter whose edge it is. Computed in double from finite
-// numbers: for float nothing overflows; t is in [0, 1].
+// Where the edge from `in` (distance >= 0) to `out` (distance < 0) meets planes[k], snapped to be inside it
+// and all planes before it. A function of the two ends alone: no matter whose edge it is. Computed in double
+// from finite numbers: for float nothing overflows; t is in [0, 1].
 template <std::floating_point R>
 ClipVertex<R> clip_crossing(const std::array<ClipPlane, 6>& planes, std::size_t k, const ClipVertex<R>& in,
                             const ClipVertex<R>& out) {
   const glm::dvec4 a(in.p), b(out.p);
   const double d_in = clip_distance(planes[k], a), d_out = clip_distance(planes[k], b);
   const double t = d_in / (d_in - d_out);
-  ClipVertex<R> v{glm::vec<4, R>(a + (b - a) * t), in.weights + (out.weights - in.weights) * t};
+  ClipVertex<R> v{glm::vec<4, R>(a + (b - a) * t), in.weights + (out.weights - in.weights) * t, -1};
   for (std::size_t i = 0; i <= k; ++i) {
     const auto& plane = planes[i];
     if (i != k && clip_distance(plane, v.p) >= 0) continue;
@@ -85,8 +100,8 @@ ClipVertex<R> clip_crossing(const std::array<ClipPlane, 6>& planes, std::size_t 
   return v;
 }
 
-// Keeps the part of a convex ring inside planes[k]; what touches the plane from outside in a point or an edge has
-// no area and leaves fewer than three corners.
+// Keeps the part of a convex ring inside planes[k]; what touches the plane from outside in a point or an edge
+// has no area and leaves fewer than three corners.
 template <std::floating_point R>
 ClipRing<R> clip_halfspace(const ClipRing<R>& ring, const std::array<ClipPlane, 6>& planes, std::size_t k) {
   ClipRing<R> kept;
@@ -103,15 +118,15 @@ ClipRing<R> clip_halfspace(const ClipRing<R>& ring, const std::array<ClipPlane, 
   return kept;
 }
 
-// The part of a triangle inside the planes whose bit is set in `cutting` (the union of its corners' outcodes), as a
-// convex ring in the triangle's order, or an empty one. Requires finite coordinates.
+// The part of a triangle inside the planes whose bit is set in `cutting` (the union of its corners'
+// outcodes), as a convex ring in the triangle's order, or an empty one. Requires finite coordinates.
 template <std::floating_point R>
 ClipRing<R> clip_triangle(const std::array<ClipPlane, 6>& planes, std::uint8_t cutting,
                           const glm::vec<4, R>& a, const glm::vec<4, R>& b, const glm::vec<4, R>& c) {
   ClipRing<R> ring;
-  ring.push({a, {1, 0, 0}});
-  ring.push({b, {0, 1, 0}});
-  ring.push({c, {0, 0, 1}});
+  ring.push({a, {1, 0, 0}, 0});
+  ring.push({b, {0, 1, 0}, 1});
+  ring.push({c, {0, 0, 1}, 2});
   for (std::size_t k = 0; k < 6 && ring.size > 0; ++k)
     if ((cutting >> k & 1) != 0) ring = clip_halfspace(ring, planes, k);
   return ring;

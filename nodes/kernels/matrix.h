@@ -67,8 +67,8 @@ std::optional<Square<n>> eliminate(Square<n> a) {
   return x;
 }
 
-// One Newton step X + X (I - A X), the residual in twice the precision: where A is not hopeless the error of X
-// falls to a few u.
+// One Newton step X + X (I - A X), the residual in twice the precision: where A is not hopeless the error of
+// X falls to a few u.
 template <glm::length_t n>
 Square<n> refined(const Square<n>& a, const Square<n>& x) {
   Square<n> residual;
@@ -87,12 +87,12 @@ Square<n> refined(const Square<n>& a, const Square<n>& x) {
 
 }  // namespace matrix_detail
 
-// The inverse of any n x n matrix (3 or 4) of finite numbers, or nothing where it is singular: for n = 3 exactly
-// when its determinant is 0, for n = 4 when elimination finds no pivot, and whenever the inverse leaves the
-// range of double. A diagonal of 1e-20 or of (1e12, 1, 1e-12) is as good as any other: rows and columns are first
-// brought to size 1 by exact powers of two. Error below 4 u + 16 u^2 / rcond, relative to the largest entry of the
-// equilibrated inverse.
-// Source: Higham 2002, "Accuracy and Stability of Numerical Algorithms", sections 9.8, 12.1 and 14.6.
+// The inverse of any n x n matrix (3 or 4) of finite numbers, or nothing where it is singular: for n = 3
+// exactly when its determinant is 0, for n = 4 when elimination finds no pivot, and whenever the inverse
+// leaves the range of double. A diagonal of 1e-20 or of (1e12, 1, 1e-12) is as good as any other: rows and
+// columns are first brought to size 1 by exact powers of two. Error below 4 u + 16 u^2 / rcond, relative to
+// the largest entry of the equilibrated inverse. Source: Higham 2002, "Accuracy and Stability of Numerical
+// Algorithms", sections 9.8, 12.1 and 14.6.
 template <glm::length_t n>
 std::optional<Inverse<n>> inverse(const Square<n>& matrix) {
   Square<n> a = matrix;

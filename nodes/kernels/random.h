@@ -1,8 +1,8 @@
 #pragma once
 // Random numbers as a pure function of where they are used: no state, so any order of pixels, tiles and
 // threads draws the same ones.
-// Source: Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3", SC11; Philox4x32-10 passes all of
-// TestU01's BigCrush.
+// Source: Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3", SC11; Philox4x32-10 passes all
+// of TestU01's BigCrush.
 
 #include <array>
 #include <concepts>
@@ -27,8 +27,8 @@ constexpr Random4 philox(Random4 counter, std::array<std::uint32_t, 2> key) {
   return counter;
 }
 
-// What a random number is for: "lens", "light", "jitter". FNV-1a of the name; fold a bounce or light number in
-// with `at`.
+// What a random number is for: "lens", "light", "jitter". FNV-1a of the name; fold a bounce or light number
+// in with `at`.
 class Dimension {
  public:
   constexpr explicit Dimension(std::string_view name) {

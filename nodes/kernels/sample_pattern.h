@@ -38,8 +38,8 @@ constexpr std::uint32_t reverse_bits(std::uint32_t v) {
   return v >> 16 | v << 16;
 }
 
-// The first two dimensions of Sobol's sequence, as binary fractions of 32 bits. The second's direction numbers
-// are Pascal's triangle modulo 2: each is the one before it, exclusive-or itself shifted by one.
+// The first two dimensions of Sobol's sequence, as binary fractions of 32 bits. The second's direction
+// numbers are Pascal's triangle modulo 2: each is the one before it, exclusive-or itself shifted by one.
 constexpr std::array<std::uint32_t, 2> sobol(std::uint32_t index) {
   std::uint32_t y = 0, direction = 1U << 31;
   for (std::uint32_t i = index; i != 0; i >>= 1) {

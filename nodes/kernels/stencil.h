@@ -18,8 +18,8 @@
 
 namespace frustum::kernels {
 
-// Rows of (source, weight) pairs. In each row the first source is the one the others are measured from; a weight of
-// zero still reads its source, so leave such pairs out.
+// Rows of (source, weight) pairs. In each row the first source is the one the others are measured from; a
+// weight of zero still reads its source, so leave such pairs out.
 class Stencils {
  public:
   void reserve(std::size_t rows, std::size_t pairs) {
@@ -73,10 +73,10 @@ struct Wide<glm::vec<n, T>> {
 constexpr std::size_t rows_per_task = 2048;
 }  // namespace stencil_detail
 
-// Applies rows whose weights sum to 1: out[i] = x_0 + sum w_j (x_j - x_0), in double, rounded once. Equal inputs come
-// back bit for bit, however far from the origin; an empty row gives zero.
-// T is float, double or a glm vector of them. Requires out.size() = rows, sources < in.size(); `out` must not
-// overlap `in`. Rows are independent: any number of threads writes the same bytes.
+// Applies rows whose weights sum to 1: out[i] = x_0 + sum w_j (x_j - x_0), in double, rounded once. Equal
+// inputs come back bit for bit, however far from the origin; an empty row gives zero. T is float, double or a
+// glm vector of them. Requires out.size() = rows, sources < in.size(); `out` must not overlap `in`. Rows are
+// independent: any number of threads writes the same bytes.
 template <class T>
 void apply_affine(const Stencils& stencils, std::span<const T> in, std::span<T> out) {
   using Wide = typename stencil_detail::Wide<T>::type;

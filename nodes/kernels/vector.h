@@ -55,7 +55,8 @@ R largest_component(const glm::vec<n, R>& v) {
   return largest;
 }
 
-// The power of two that brings a finite x > 0 into [1, 2), or as near as the range allows (2^-1022 ... 2^1022).
+// The power of two that brings a finite x > 0 into [1, 2), or as near as the range allows (2^-1022 ...
+// 2^1022).
 inline double power_of_two_towards_one(double x) {
   const auto exponent = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(x) >> 52 & 0x7ff);
   const std::int64_t wanted = 2046 - (exponent < 1 ? 1 : exponent);
@@ -135,8 +136,8 @@ glm::vec<n, R> lerp(const glm::vec<n, R>& a, const glm::vec<n, R>& b, R t) {
 }
 
 // Two unit vectors that complete the unit vector n to a right-handed frame (tangent, bitangent, n),
-// orthonormal to 6 u everywhere (of which 2 u are what n itself may be off). Continuous except across n.z = 0.
-// Source: Duff et al. 2017, "Building an orthonormal basis, revisited", JCGT 6(1).
+// orthonormal to 6 u everywhere (of which 2 u are what n itself may be off). Continuous except across n.z =
+// 0. Source: Duff et al. 2017, "Building an orthonormal basis, revisited", JCGT 6(1).
 template <std::floating_point R>
 struct Frame3 {
   glm::vec<3, R> tangent, bitangent;

@@ -68,6 +68,7 @@ class Column {
   Space space() const { return space_; }
   std::size_t bytes() const { return rows_ * static_cast<std::size_t>(width_) * bytes_of(kind_); }
   const void* data() const { return data_.get(); }
+  void* data() { return data_.get(); }
 
   // The elements, where T is what is stored; throws std::logic_error otherwise.
   template <class T>

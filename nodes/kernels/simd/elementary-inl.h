@@ -1,8 +1,8 @@
-// exp, exp2, log, log2 and pow on highway vectors of float. Scalar twin: nodes/kernels/elementary_exp.h, whose
-// operations these repeat one by one, so that each lane has the scalar function's bits on every target.
+// exp, exp2, log, log2 and pow on highway vectors of float. Scalar twin: nodes/kernels/elementary_exp.h,
+// whose operations these repeat one by one, so that each lane has the scalar function's bits on every target.
 //
-// Include inside a file that uses hwy/foreach_target.h, then call frustum::HWY_NAMESPACE::pow(d, x, y) and so on.
-// No MulAdd anywhere: it rounds once with FMA and twice without.
+// Include inside a file that uses hwy/foreach_target.h, then call frustum::HWY_NAMESPACE::pow(d, x, y) and so
+// on. No MulAdd anywhere: it rounds once with FMA and twice without.
 
 #if defined(FRUSTUM_KERNELS_SIMD_ELEMENTARY_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FRUSTUM_KERNELS_SIMD_ELEMENTARY_INL_H

@@ -192,7 +192,7 @@ TEST(ClipTriangle, KeepsExactlyTheAreaInside) {
     };
     // Peel: the part outside plane 0, then of the rest outside plane 1, ... by the mirrored plane.
     ClipRing<double> rest;
-    rest.push({p[0], {1, 0, 0}}), rest.push({p[1], {0, 1, 0}}), rest.push({p[2], {0, 0, 1}});
+    rest.push({p[0], {1, 0, 0}, 0}), rest.push({p[1], {0, 1, 0}, 1}), rest.push({p[2], {0, 0, 1}, 2});
     double discarded = 0;
     for (std::size_t k = 0; k < 6; ++k) {
       auto mirrored = volume;
@@ -211,6 +211,19 @@ TEST(Outcode, PutsNaNOutsideEverything) {
   EXPECT_EQ(kernels::outcode(volume, glm::vec4(0, 0, -2, 1)), 1);
   EXPECT_EQ(kernels::outcode(kernels::view_volume(true), glm::vec4(0, 0, 2, 1)), 1);
   EXPECT_EQ(kernels::outcode(kernels::view_volume(true), glm::vec4(0, 0, -0.5F, 1)), 2);
+}
+
+TEST(Outcode, OfTheVolumeIsThatOfItsPlanes) {
+  Random random(4);
+  for (int i = 0; i < 100000; ++i) {
+    auto p = random_point<float>(random, 1.2);
+    if (i % 5 == 0) p[static_cast<int>(random.below(3))] = p.w;
+    if (i % 7 == 0) p[static_cast<int>(random.below(3))] = i % 2 == 0 ? std::nanf("") : -0.0F;
+    for (const bool reversed : {false, true})
+      for (const double guard : {1.0, 1.3})
+        EXPECT_EQ(kernels::volume_outcode(reversed, static_cast<float>(guard), p),
+                  kernels::outcode(kernels::view_volume(reversed, guard), p));
+  }
 }
 
 }  // namespace

@@ -1,0 +1,73 @@
+#include "nodes/cull/backface.h"
+
+#include "nodes/all_nodes.h"
+#include "runtime/buffers/mesh_faces.h"
+#include "runtime/core/node_type.h"
+
+namespace frustum {
+namespace {
+
+enum class Side { back, front };
+constexpr auto choices(Side) {
+  return std::array{std::pair{Side::back, "back"}, std::pair{Side::front, "front"}};
+}
+
+enum class Rays { perspective, orthographic };
+constexpr auto choices(Rays) {
+  return std::array{std::pair{Rays::perspective, "perspective"},
+                    std::pair{Rays::orthographic, "orthographic"}};
+}
+
+struct Inputs {
+  Ref<Mesh> mesh;
+};
+struct Params {
+  Side drop = Side::back;
+  Rays projection = Rays::perspective;
+};
+struct Outputs {
+  Ref<Mesh> mesh;
+};
+
+template <class R>
+std::vector<std::uint32_t> showing(const Mesh& mesh, const Params& p) {
+  using cull::Rows;
+  const int wanted = p.drop == Side::back ? 1 : -1;
+  const auto faces = [&]<Rows rows, int width>() {
+    using Point = glm::vec<width, R>;
+    const auto column = mesh.real<R>("position");
+    return cull::faces_showing<rows, Point>(wanted, column->template values<Point>(), mesh.triangles());
+  };
+  switch (mesh.space()) {
+    case Space::clip: return faces.template operator()<Rows::clip, 4>();
+    case Space::screen: return faces.template operator()<Rows::screen, 4>();
+    case Space::ndc: return faces.template operator()<Rows::flat, 3>();
+    default:
+      if (p.projection == Rays::orthographic) return faces.template operator()<Rows::flat, 3>();
+      return faces.template operator()<Rows::eye_perspective, 3>();
+  }
+}
+
+Outputs run(const Inputs& in, const Params& p, Context& ctx) {
+  const auto faces = ctx.real([&]<class R>() { return showing<R>(*in.mesh, p); });
+  ctx.count("triangles_culled", in.mesh->faces() - faces.size());
+  if (faces.size() == in.mesh->faces()) return {in.mesh};
+  return {std::make_shared<Mesh>(select_faces(*in.mesh, faces))};
+}
+
+}  // namespace
+
+NodeType nodes::cull_backface() {
+  return node("cull.backface", run)
+      .doc("Drops the faces that turn their back to the camera, which closed opaque solids never show.")
+      .cite("Sign by exact arithmetic: Shewchuk 1997; errata E23 and E24")
+      .covers(38, 39)
+      .input("mesh", &Inputs::mesh, "A mesh in eye, clip, normalised device or screen space.",
+             {.space = {Space::eye, Space::clip, Space::ndc, Space::screen}})
+      .param("drop", &Params::drop, "Which side goes; edge-on faces go with either.")
+      .param("projection", &Params::projection,
+             "How the eye sees in eye space; other spaces know it already.")
+      .output("mesh", &Outputs::mesh, "The faces that show the other side; vertices are shared.");
+}
+
+}  // namespace frustum

@@ -1,0 +1,43 @@
+#include "nodes/cull/frustum.h"
+
+#include "nodes/all_nodes.h"
+#include "runtime/buffers/mesh_faces.h"
+#include "runtime/core/node_type.h"
+
+namespace frustum {
+namespace {
+
+struct Inputs {
+  Ref<Mesh> mesh;
+};
+struct Params {};
+struct Outputs {
+  Ref<Mesh> mesh;
+};
+
+Outputs run(const Inputs& in, const Params&, Context& ctx) {
+  const bool reversed_z = in.mesh->camera && in.mesh->camera->reversed_z;
+  std::vector<std::uint32_t> faces;
+  ctx.real([&]<class R>() {
+    const auto column = in.mesh->real<R>("position");
+    faces = cull::faces_not_outside<R>(reversed_z, column->template values<glm::vec<4, R>>(),
+                                       in.mesh->triangles());
+  });
+  ctx.count("triangles_culled", in.mesh->faces() - faces.size());
+  if (faces.size() == in.mesh->faces()) return {in.mesh};
+  return {std::make_shared<Mesh>(select_faces(*in.mesh, faces))};
+}
+
+}  // namespace
+
+NodeType nodes::cull_frustum() {
+  return node("cull.frustum", run)
+      .doc("Drops faces that lie wholly outside one side of the view volume; what it keeps it does not cut.")
+      .cite("Assarsson & Moller 2000, Journal of Graphics Tools 5(1), for triangles")
+      .covers(37)
+      .input("mesh", &Inputs::mesh, "A mesh in clip space.", {.space = Space::clip})
+      .output("mesh", &Outputs::mesh, "The faces that may show; never one fewer than those that do.",
+              {.space = Space::clip});
+}
+
+}  // namespace frustum

@@ -1,0 +1,55 @@
+#pragma once
+// Loops over blocks of fixed size: what each block does depends on its number alone, so that any number of
+// threads gives the same bytes.
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace frustum::kernels {
+
+// Calls body(begin, end) for [0, block), [block, 2 block), ... below n; in parallel where there is more than
+// one. What a body throws comes out, and blocks not yet begun are left.
+template <class Body>
+void parallel_blocks(std::size_t n, std::size_t block, const Body& body) {
+  if (n <= block) {
+    if (n > 0) body(std::size_t{0}, n);
+    return;
+  }
+  tbb::parallel_for(std::size_t{0}, (n + block - 1) / block,
+                    [&](std::size_t k) { body(k * block, std::min(n, (k + 1) * block)); });
+}
+
+// Elements of the usual block: enough work to hide the cost of handing it over.
+inline constexpr std::size_t usual_block = 16384;
+
+// The i < n for which keep(i), ascending. `keep` may be called from any thread.
+template <class Keep>
+std::vector<std::uint32_t> indices_where(std::size_t n, const Keep& keep) {
+  const std::size_t blocks = (n + usual_block - 1) / usual_block;
+  const auto found = std::make_unique_for_overwrite<std::uint32_t[]>(n);
+  std::vector<std::size_t> first(blocks + 1, 0);
+  parallel_blocks(n, usual_block, [&](std::size_t begin, std::size_t end) {
+    std::size_t at = begin;
+    for (std::size_t i = begin; i < end; ++i) {
+      found[at] = static_cast<std::uint32_t>(i);
+      at += keep(i) ? 1 : 0;  // without a branch: kept and dropped faces come in no order
+    }
+    first[begin / usual_block + 1] = at - begin;
+  });
+  for (std::size_t k = 0; k < blocks; ++k) first[k + 1] += first[k];
+  std::vector<std::uint32_t> kept(first[blocks]);
+  parallel_blocks(n, usual_block, [&](std::size_t begin, std::size_t) {
+    const std::size_t k = begin / usual_block;
+    std::copy_n(found.get() + begin, first[k + 1] - first[k],
+                kept.begin() + static_cast<std::ptrdiff_t>(first[k]));
+  });
+  return kept;
+}
+
+}  // namespace frustum::kernels

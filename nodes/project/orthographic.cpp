@@ -1,0 +1,55 @@
+#include "nodes/project/orthographic.h"
+
+#include "nodes/all_nodes.h"
+#include "runtime/buffers/mesh.h"
+#include "runtime/core/node_type.h"
+
+namespace frustum {
+namespace {
+
+struct Inputs {
+  Ref<Mesh> mesh;
+  Ref<Camera> camera;
+};
+struct Params {};
+struct Outputs {
+  Ref<Mesh> mesh;
+};
+
+kernels::Projection volume_of(const Camera& c) {
+  const double aspect = c.resolution.y > 0 ? c.aspect() : 0;
+  const auto fault = project::fault_of_orthographic(c.height, aspect, c.near_z, c.far_z);
+  if (!fault.empty()) throw NodeError("impossible_camera", std::string(fault));
+  return kernels::orthographic(c.height, aspect, c.near_z, c.far_z, c.reversed_z);
+}
+
+Outputs run(const Inputs& in, const Params&, Context& ctx) {
+  const kernels::Projection volume = volume_of(*in.camera);
+  auto out = std::make_shared<Mesh>();
+  ctx.real([&]<class R>() {
+    using Eye = glm::vec<3, R>;
+    using Clip = glm::vec<4, R>;
+    const auto eye = in.mesh->real<R>("position");
+    auto clip = Column::make<Clip>("position", Domain::vertex, eye->rows(), Space::clip);
+    kernels::map_to_clip<R>(volume, eye->template values<Eye>(), clip->template values<Clip>());
+    *out = in.mesh->with(std::move(clip));
+  });
+  out->camera = in.camera;
+  ctx.count("vertices", out->vertices());
+  return {std::move(out)};
+}
+
+}  // namespace
+
+NodeType nodes::project_orthographic() {
+  return node("project.orthographic", run)
+      .doc("Maps the camera's view box to clip space; sizes do not depend on distance.")
+      .cite("OpenGL 4.6 compatibility profile, glOrtho; errata E9")
+      .covers(20)
+      .input("mesh", &Inputs::mesh, "A mesh in eye space.", {.space = Space::eye})
+      .input("camera", &Inputs::camera, "Whose view volume it is.")
+      .output("mesh", &Outputs::mesh, "Position in clip space: x, y, z, w, not divided; all else is shared.",
+              {.space = Space::clip});
+}
+
+}  // namespace frustum

@@ -1,0 +1,66 @@
+#include "nodes/scene/camera.h"
+
+#include "nodes/all_nodes.h"
+#include "runtime/buffers/camera.h"
+#include "runtime/core/node_type.h"
+
+#include <numbers>
+
+namespace frustum {
+namespace {
+
+struct Inputs {};
+struct Params {
+  glm::dvec3 eye{0, 0, 5}, target{0}, up{0, 1, 0};
+  double fov_y = 35;
+  double near = 0.1;
+  std::optional<double> far = 1000;
+  double height = 2;
+  bool reversed_z = false;
+  glm::ivec2 resolution{1280, 720};
+};
+struct Outputs {
+  Ref<Camera> camera;
+};
+
+Outputs run(const Inputs&, const Params& p, Context&) {
+  auto c = std::make_shared<Camera>();
+  c->eye = p.eye, c->target = p.target, c->up = p.up;
+  c->fov_y = p.fov_y * std::numbers::pi / 180;
+  c->near_z = p.near, c->far_z = p.far.value_or(std::numeric_limits<double>::infinity());
+  c->height = p.height;
+  c->reversed_z = p.reversed_z;
+  c->resolution = p.resolution;
+  const auto fault = scene::fault_of_camera(c->eye, c->target, c->up, c->near_z, c->far_z);
+  if (!fault.empty()) throw NodeError("impossible_camera", std::string(fault));
+  return {std::move(c)};
+}
+
+}  // namespace
+
+NodeType nodes::scene_camera() {
+  return node("scene.camera", run)
+      .doc("Where the picture is taken from: place, direction, view volume and size in pixels.")
+      .covers(22)
+      .param("eye", &Params::eye, "Where the camera stands, in world space.", {.unit = "world units"})
+      .param("target", &Params::target, "The point in the middle of the picture.", {.unit = "world units"})
+      .param("up", &Params::up, "The direction that points up in the picture.")
+      .param("fov_y", &Params::fov_y,
+             "Angle between the top and bottom of a perspective; raising it shows more, smaller.",
+             {.unit = "degrees", .range = {.low = 0, .high = 180, .open_low = true, .open_high = true}})
+      .param("near", &Params::near,
+             "Distance of the near plane; raising it saves depth precision and cuts more away.",
+             {.unit = "world units", .range = above(0)})
+      .param("far", &Params::far, "Distance of the far plane; null puts it at infinity.",
+             {.unit = "world units", .range = above(0)})
+      .param("height", &Params::height, "Height of the view volume of an orthographic projection.",
+             {.unit = "world units", .range = above(0)})
+      .param("reversed_z", &Params::reversed_z,
+             "Depth falls from 1 at near to 0 at far, which resolves far distances better.")
+      .param("resolution", &Params::resolution,
+             "Width and height of the picture; their ratio is that of the view.",
+             {.unit = "px", .range = between(1, 65536)})
+      .output("camera", &Outputs::camera, "The camera.");
+}
+
+}  // namespace frustum

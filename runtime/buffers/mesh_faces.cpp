@@ -1,0 +1,75 @@
+#include "runtime/buffers/mesh_faces.h"
+
+#include "nodes/kernels/parallel.h"
+
+#include <cstring>
+
+namespace frustum {
+namespace {
+
+template <std::size_t bytes>
+void gather_rows(const std::byte* from, std::byte* to, std::span<const std::uint32_t> rows) {
+  kernels::parallel_blocks(rows.size(), kernels::usual_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      std::memcpy(to + i * bytes, from + std::size_t{rows[i]} * bytes, bytes);
+  });
+}
+
+void gather_rows(const std::byte* from, std::byte* to, std::span<const std::uint32_t> rows,
+                 std::size_t bytes) {
+  switch (bytes) {
+    case 4: return gather_rows<4>(from, to, rows);
+    case 8: return gather_rows<8>(from, to, rows);
+    case 12: return gather_rows<12>(from, to, rows);
+    case 16: return gather_rows<16>(from, to, rows);
+    default: break;
+  }
+  kernels::parallel_blocks(rows.size(), kernels::usual_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      std::memcpy(to + i * bytes, from + std::size_t{rows[i]} * bytes, bytes);
+  });
+}
+
+bool is_everything(std::span<const std::uint32_t> faces, std::size_t count) {
+  if (faces.size() != count) return false;
+  for (std::size_t i = 0; i < count; ++i)
+    if (faces[i] != i) return false;
+  return true;
+}
+
+}  // namespace
+
+Ref<Column> gather_faces(const Column& column, std::span<const std::uint32_t> faces) {
+  const std::size_t rows_per_face = column.domain() == Domain::corner ? 3 : 1;
+  auto out = std::make_shared<Column>(column.name(), column.domain(), column.kind(), column.width(),
+                                      faces.size() * rows_per_face, column.space());
+  gather_rows(static_cast<const std::byte*>(column.data()), static_cast<std::byte*>(out->data()), faces,
+              rows_per_face * static_cast<std::size_t>(column.width()) * bytes_of(column.kind()));
+  return out;
+}
+
+Ref<Column> origin_of(const Mesh& mesh) {
+  if (auto origin = mesh.share("origin")) return origin;
+  auto own = Column::make<std::uint32_t>("origin", Domain::face, mesh.faces());
+  const auto values = own->values<std::uint32_t>();
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::uint32_t>(i);
+  return own;
+}
+
+Mesh select_faces(const Mesh& mesh, std::span<const std::uint32_t> faces) {
+  if (is_everything(faces, mesh.faces())) return mesh;
+  Mesh out = mesh;
+  out.columns.clear();
+  for (const auto& column : mesh.columns) {
+    const bool moves = column->domain() == Domain::face || column->domain() == Domain::corner;
+    out.columns.push_back(moves ? gather_faces(*column, faces) : column);
+  }
+  if (mesh.find("origin") == nullptr) {
+    auto origin = Column::make<std::uint32_t>("origin", Domain::face, faces);
+    out.columns.push_back(std::move(origin));
+  }
+  if (mesh.closed == true) out.closed = false;
+  return out;
+}
+
+}  // namespace frustum

@@ -1,0 +1,23 @@
+// Meshes with some of the faces of another: what culling and clipping have in common.
+#pragma once
+
+#include "runtime/buffers/mesh.h"
+
+#include <cstdint>
+#include <span>
+
+namespace frustum {
+
+// The faces listed, in that order, each with its corner and face columns; vertex columns are shared, so
+// vertices that no face uses any more stay. Face column `origin` is made where there was none. All faces in
+// order give the mesh itself. Requires indices < faces. Parallel; the same bytes for any number of threads.
+Mesh select_faces(const Mesh& mesh, std::span<const std::uint32_t> faces);
+
+// A face or corner column whose element k is that of the old face faces[k]; a corner column moves three rows
+// at a time.
+Ref<Column> gather_faces(const Column& column, std::span<const std::uint32_t> faces);
+
+// Column `origin` of the mesh, or each face's own number where it has none.
+Ref<Column> origin_of(const Mesh& mesh);
+
+}  // namespace frustum

@@ -1,0 +1,58 @@
+#include "nodes/scene/camera.h"
+
+#include "nodes/all_nodes.h"
+#include "runtime/buffers/camera.h"
+#include "tests/support/run_node.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace frustum {
+namespace {
+
+Camera camera(const Json& params) {
+  return *test::run_node(nodes::scene_camera(), params).at(0).as<Camera>();
+}
+std::string error(const Json& params) { return test::run_error(nodes::scene_camera(), params).first; }
+
+TEST(SceneCamera, ConvertsDegreesAndKeepsTheRest) {
+  const Camera c =
+      camera({{"eye", {4, 3, 6}}, {"target", {0, 1, 0}}, {"fov_y", 90}, {"resolution", {640, 480}}});
+  EXPECT_EQ(c.eye, glm::dvec3(4, 3, 6));
+  EXPECT_EQ(c.target, glm::dvec3(0, 1, 0));
+  EXPECT_DOUBLE_EQ(c.fov_y, 1.5707963267948966);
+  EXPECT_EQ(c.resolution, glm::ivec2(640, 480));
+  EXPECT_DOUBLE_EQ(c.aspect(), 4.0 / 3);
+  EXPECT_FALSE(c.reversed_z);
+}
+
+TEST(SceneCamera, HasTheDefaultsOfItsBuffer) {
+  const Camera c = camera(Json::object()), d;
+  EXPECT_EQ(c.eye, d.eye);
+  EXPECT_EQ(c.up, d.up);
+  EXPECT_EQ(c.fov_y, d.fov_y);
+  EXPECT_EQ(c.near_z, d.near_z);
+  EXPECT_EQ(c.far_z, d.far_z);
+  EXPECT_EQ(c.resolution, d.resolution);
+}
+
+TEST(SceneCamera, PutsTheFarPlaneAtInfinityForNull) {
+  EXPECT_EQ(camera({{"far", nullptr}}).far_z, std::numeric_limits<double>::infinity());
+}
+
+TEST(SceneCamera, RefusesImpossibleNumbers) {
+  EXPECT_EQ(error({{"near", 2}, {"far", 1}}), "impossible_camera");
+  EXPECT_EQ(error({{"near", 2}, {"far", 2}}), "impossible_camera");
+  EXPECT_THROW(camera({{"near", 0}}), std::runtime_error);
+  EXPECT_THROW(camera({{"fov_y", 180}}), std::runtime_error);
+  EXPECT_THROW(camera({{"resolution", {0, 10}}}), std::runtime_error);
+  EXPECT_THROW(camera({{"fovy", 30}}), std::runtime_error);
+  EXPECT_FALSE(scene::fault_of_camera({std::nan(""), 0, 0}, {}, {}, 1, 2).empty());
+  EXPECT_TRUE(scene::fault_of_camera({}, {}, {}, 1, 2).empty());
+}
+
+}  // namespace
+}  // namespace frustum
