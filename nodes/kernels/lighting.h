@@ -241,11 +241,15 @@ bool take_face(std::uint32_t* left, std::size_t samples, std::size_t stride, std
   return any;
 }
 
-/// Copies `from` to `to` where `id` is `face` and there is a face.
+/// Copies the planes of `from` that `to` has where `id` is `face` and there is a face.
 template <std::floating_point R>
-void put_face(const std::uint32_t* id, const std::uint32_t* face, std::size_t n, const R* from, R* to) {
-  for (std::size_t x = 0; x < n; ++x)
-    if (id[x] == face[x] && face[x] != nothing_there) to[x] = from[x];
+void put_face(const std::uint32_t* id, const std::uint32_t* face, std::size_t first, std::size_t last,
+              const ColorRows<R>& from, const ColorRows<R>& to) {
+  for (std::size_t x = first; x < last; ++x) {
+    if (id[x] != face[x] || face[x] == nothing_there) continue;
+    for (std::size_t k = 0; k < 4; ++k)
+      if (to.plane[k] != nullptr) to.plane[k][x] = from.plane[k][x];
+  }
 }
 
 }  // namespace frustum::kernels

@@ -37,6 +37,7 @@ class ResolveWeights {
   /// offset in [0, 1) only where |d| < radius + 1/2.
   int margin() const { return margin_; }
   int samples() const { return samples_; }
+  int period() const { return period_; }
   /// Whether any sample s of column dx, of row dy, has a weight.
   bool has_across(int dx, int s) const {
     return has_across_[static_cast<std::size_t>((dx + margin_) * samples_ + s)];
@@ -86,13 +87,17 @@ template <std::floating_point R>
 struct ResolveRow {
   int x0 = 0, y = 0;
   std::size_t n = 0;
-  int left = 0, right = 0;  ///< columns of the window from x0: left <= 0, right >= n
-  /// Rows of samples: plane p, sample s, row y + dy at in[(p samples + s) (2 margin + 1) + dy + margin], its
-  /// element 0 being column x0; null where y + dy lies outside the window.
-  std::span<const R* const> in;
+  int left = 0, right = 0;                           ///< columns of the window from x0: left <= 0, right >= n
+  int top = 0, bottom = 0;                           ///< rows of the window from y: top <= 0, bottom > 0
+  std::span<const R* const> in;                      ///< by plane: sample 0 of pixel (x0, y)
+  std::ptrdiff_t sample_stride = 0, row_stride = 0;  ///< elements
   std::span<const std::uint32_t* const>
       flat;                 ///< by plane: not 0 where all samples in reach have the same bits
   std::span<R* const> out;  ///< by plane
+
+  const R* samples(std::size_t plane, int sample, int dy) const {
+    return in[plane] + sample * sample_stride + dy * row_stride;
+  }
 };
 
 /// Pixel x of every plane: sum(w c) / sum(w) over the samples in the window, in the order dy, s, dx. Where
@@ -100,33 +105,24 @@ struct ResolveRow {
 /// sample.
 template <std::floating_point R>
 void resolve_pixel(const ResolveWeights<R>& weights, const ResolveRow<R>& row, std::size_t x) {
-  const int m = weights.margin(), samples = weights.samples(), px = static_cast<int>(x);
-  const auto rows = static_cast<std::size_t>(2 * m + 1);
-  const auto in = [&](std::size_t p, int s, int dy) {
-    return row.in[(p * static_cast<std::size_t>(samples) + static_cast<std::size_t>(s)) * rows +
-                  static_cast<std::size_t>(dy + m)];
-  };
+  const int m = weights.margin(), px = static_cast<int>(x);
   for (std::size_t p = 0; p < row.out.size(); ++p) {
-    if (row.flat[p][x] != 0) {
-      row.out[p][x] = in(p, 0, 0)[px];
-      continue;
-    }
+    row.out[p][x] = row.in[p][px];
+    if (row.flat[p][x] != 0) continue;
     R sum = 0, total = 0;
-    for (int dy = -m; dy <= m; ++dy) {
-      if (in(p, 0, dy) == nullptr) continue;
-      for (int s = 0; s < samples; ++s) {
+    for (int dy = std::max(-m, row.top); dy <= m && dy < row.bottom; ++dy)
+      for (int s = 0; s < weights.samples(); ++s) {
         if (!weights.has_down(dy, s)) continue;
-        const R* c = in(p, s, dy);
-        for (int dx = -m; dx <= m; ++dx) {
-          if (px + dx < row.left || px + dx >= row.right || !weights.has_across(dx, s)) continue;
-          const R w = *weights.across(dx, s, row.x0 + px + dx, row.y + dy) *
-                      *weights.down(dy, s, row.x0 + px + dx, row.y + dy);
+        const R* c = row.samples(p, s, dy);
+        for (int dx = std::max(-m, row.left - px); dx <= m && px + dx < row.right; ++dx) {
+          if (!weights.has_across(dx, s)) continue;
+          const int sx = row.x0 + px + dx, sy = row.y + dy;
+          const R w = *weights.across(dx, s, sx, sy) * *weights.down(dy, s, sx, sy);
           total = total + w;
           sum = sum + w * c[px + dx];
         }
       }
-    }
-    row.out[p][x] = total != R(0) ? sum / total : in(p, 0, 0)[px];
+    if (total != R(0)) row.out[p][x] = sum / total;
   }
 }
 
@@ -140,14 +136,16 @@ void resolve_row(const ResolveWeights<R>& weights, const ResolveRow<R>& row) {
 template <std::floating_point R>
 using BitsOf = std::conditional_t<sizeof(R) == 4, std::uint32_t, std::uint64_t>;
 
-/// For each of n pixels ~0 where its samples have the same bits, else 0; and the bits of the first one.
+/// For each of n pixels ~0 where its samples, `stride` elements apart, have the same bits, else 0; and the
+/// bits of the first one.
 template <std::floating_point R>
-void find_equal_samples(std::span<const R* const> sample, std::size_t n, std::uint32_t* equal,
-                        BitsOf<R>* bits) {
+void find_equal_samples(const R* first, int samples, std::ptrdiff_t stride, std::size_t n,
+                        std::uint32_t* equal, BitsOf<R>* bits) {
   for (std::size_t x = 0; x < n; ++x) {
-    bits[x] = std::bit_cast<BitsOf<R>>(sample[0][x]);
+    bits[x] = std::bit_cast<BitsOf<R>>(first[x]);
     bool same = true;
-    for (const R* row : sample) same = same && std::bit_cast<BitsOf<R>>(row[x]) == bits[x];
+    for (int s = 1; s < samples; ++s)
+      same = same && std::bit_cast<BitsOf<R>>((first + s * stride)[x]) == bits[x];
     equal[x] = same ? ~0u : 0u;
   }
 }

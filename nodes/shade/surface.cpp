@@ -249,20 +249,6 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
 
 // ----- tiles
 
-// The rows of one y: for each number that lighting starts from, a row per sample.
-template <class R>
-struct Rows {
-  std::size_t samples, n;
-  std::vector<const R*> row;             // [number][sample]
-  std::vector<const std::uint32_t*> id;  // [sample]
-  std::size_t numbers = 0;
-
-  void add(const std::vector<const R*>& per_sample) {
-    row.insert(row.end(), per_sample.begin(), per_sample.end());
-    ++numbers;
-  }
-};
-
 // Numbers come in threes: what is lit (normal and, where needed, position; or diffuse and specular light),
 // then albedo.
 template <class R>
@@ -349,60 +335,59 @@ class Filler {
     scratch_.side = row();
     scratch_.tag = arena.take<std::uint32_t>(n_).data();
     scratch_.present = &present_;
-    const std::size_t numbers = 6 + (s.albedo[0] ? 3 : 0);
-    const bool copies = sizeof(R) == 8 || s.interpolation != Interpolation::phong;
-    if (copies) copies_ = arena.take<R>(numbers * samples_ * n_);
+    const bool phong = s.interpolation == Interpolation::phong;
+    numbers_ = (phong && !s.position[0] ? 3 : 6) + (s.albedo[0] ? 3u : 0u);
+    if (sizeof(R) == 8 || !phong) copies_ = arena.take<R>(numbers_ * samples_ * n_);
+    row_.resize(numbers_ * samples_);
+    id_.resize(samples_);
     if (!s.once_a_pixel) return;
     left_ = arena.take<std::uint32_t>(samples_ * n_);
     face_ = arena.take<std::uint32_t>(n_);
-    for (std::size_t i = 0; i < numbers; ++i) mean_.push_back(row());
+    for (std::size_t i = 0; i < numbers_; ++i) mean_.push_back(row());
     for (auto& plane : color_.plane) plane = row();
   }
 
   void fill() {
     for (int y = out_.rect().y0; y < out_.rect().y1; ++y) {
-      const Rows<R> rows = rows_at(y);
+      find_rows(y);
       if (s_.once_a_pixel)
-        shade_faces(rows, y);
+        shade_faces(y);
       else
-        shade_samples(rows, y);
+        shade_samples(y);
     }
   }
 
  private:
   R* row() { return arena_.take<R>(n_).data(); }
+  std::span<R> copy(std::size_t number, std::size_t sample) {
+    return copies_.empty() ? copies_ : copies_.subspan((number * samples_ + sample) * n_, n_);
+  }
 
-  Rows<R> rows_at(int y) {
-    Rows<R> rows{samples_, n_, {}, {}};
-    std::size_t copy = 0;
-    const auto next_copy = [&] {
-      return copies_.empty() ? std::span<R>() : copies_.subspan(n_ * copy++, n_);
-    };
+  // The rows of one y that lighting starts from: number i of sample k at row_[i samples_ + k].
+  void find_rows(int y) {
     for (std::size_t k = 0; k < samples_; ++k)
-      rows.id.push_back(points_.row<const std::uint32_t>(s_.id, static_cast<int>(k), y));
-    const auto add = [&](const Tile& tile, RealPlane plane) {
-      std::vector<const R*> per_sample;
-      for (std::size_t k = 0; k < samples_; ++k)
-        per_sample.push_back(real_row<R>(tile, plane, static_cast<int>(k), y, next_copy()));
-      rows.add(per_sample);
+      id_[k] = points_.row<const std::uint32_t>(s_.id, static_cast<int>(k), y);
+    std::size_t number = 0;
+    const auto add = [&](const Tile& tile, const std::array<RealPlane, 3>& planes) {
+      for (const RealPlane plane : planes) {
+        for (std::size_t k = 0; k < samples_; ++k)
+          row_[number * samples_ + k] = real_row<R>(tile, plane, static_cast<int>(k), y, copy(number, k));
+        ++number;
+      }
     };
     if (s_.interpolation == Interpolation::phong) {
-      for (const RealPlane plane : s_.normal) add(points_, plane);
-      if (s_.position[0])
-        for (const RealPlane plane : s_.position) add(points_, plane);
+      add(points_, s_.normal);
+      if (s_.position[0]) add(points_, s_.position);
     } else {
-      std::array<std::vector<const R*>, 6> light;
       for (std::size_t k = 0; k < samples_; ++k) {
         std::array<R*, 6> out;
-        for (std::size_t i = 0; i < 6; ++i) light[i].push_back(out[i] = next_copy().data());
-        interpolate_row(s_, shader_, points_.frame(), rows.id[k], static_cast<int>(k), points_.rect().x0, y,
-                        n_, out);
+        for (std::size_t i = 0; i < 6; ++i) row_[i * samples_ + k] = out[i] = copy(i, k).data();
+        interpolate_row(s_, shader_, points_.frame(), id_[k], static_cast<int>(k), points_.rect().x0, y, n_,
+                        out);
       }
-      for (const auto& per_sample : light) rows.add(per_sample);
+      number = 6;
     }
-    if (s_.albedo[0])
-      for (const RealPlane plane : s_.albedo) add(albedo_, plane);
-    return rows;
+    if (s_.albedo[0]) add(albedo_, s_.albedo);
   }
 
   kernels::ColorRows<R> out_rows(std::size_t sample, int y) const {
@@ -412,30 +397,25 @@ class Filler {
     return rows;
   }
 
-  void shade_samples(const Rows<R>& rows, int y) {
+  void shade_samples(int y) {
     for (std::size_t k = 0; k < samples_; ++k) {
-      const auto number = [&](std::size_t i) { return rows.row[i * samples_ + k]; };
-      shade_row(shader_.scene, point_row<R>(s_, rows.id[k], number), n_, scratch_, out_rows(k, y));
+      const auto number = [&](std::size_t i) { return row_[i * samples_ + k]; };
+      shade_row(shader_.scene, point_row<R>(s_, id_[k], number), n_, scratch_, out_rows(k, y));
     }
   }
 
   // Once for each face a pixel sees, at the mean of its samples there; all of them get that colour.
-  void shade_faces(const Rows<R>& rows, int y) {
+  void shade_faces(int y) {
     for (std::size_t k = 0; k < samples_; ++k) {
-      std::copy_n(rows.id[k], n_, left_.data() + k * n_);
+      std::copy_n(id_[k], n_, left_.data() + k * n_);
       for (R* plane : out_rows(k, y).plane)
         if (plane != nullptr) std::fill_n(plane, n_, R(0));
     }
-    const std::span<R* const> mean(mean_.data(), rows.numbers);
-    while (take_face_row<R>(left_.data(), samples_, n_, rows.row, face_.data(), mean)) {
-      shade_row(shader_.scene, point_row<R>(s_, face_.data(), [&](std::size_t i) { return mean_[i]; }), n_,
-                scratch_, color_);
-      for (std::size_t k = 0; k < samples_; ++k) {
-        const auto to = out_rows(k, y);
-        for (std::size_t c = 0; c < 4; ++c)
-          if (to.plane[c] != nullptr)
-            put_face_row(rows.id[k], face_.data(), n_, color_.plane[c], to.plane[c]);
-      }
+    const PointRow<R> means = point_row<R>(s_, face_.data(), [&](std::size_t i) { return mean_[i]; });
+    while (take_face_row<R>(left_.data(), samples_, n_, row_, face_.data(), mean_)) {
+      shade_row(shader_.scene, means, n_, scratch_, color_);
+      for (std::size_t k = 0; k < samples_; ++k)
+        put_face_row(id_[k], face_.data(), n_, color_, out_rows(k, y));
     }
   }
 
@@ -444,6 +424,9 @@ class Filler {
   const Tile &points_, &albedo_, &out_;
   Arena& arena_;
   std::size_t n_, samples_;
+  std::size_t numbers_;
+  std::vector<const R*> row_;
+  std::vector<const std::uint32_t*> id_;  // by sample
   RowScratch<R> scratch_;
   std::vector<std::uint8_t> present_;
   std::span<R> copies_;

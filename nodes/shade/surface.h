@@ -134,11 +134,12 @@ bool take_face_row(std::uint32_t* left, std::size_t samples, std::size_t n, std:
 }
 
 template <std::floating_point R>
-void put_face_row(const std::uint32_t* id, const std::uint32_t* face, std::size_t n, const R* from, R* to) {
+void put_face_row(const std::uint32_t* id, const std::uint32_t* face, std::size_t n,
+                  const kernels::ColorRows<R>& from, const kernels::ColorRows<R>& to) {
   if constexpr (sizeof(R) == 4)
     kernels::simd::put_face(id, face, n, from, to);
   else
-    kernels::put_face(id, face, n, from, to);
+    kernels::put_face(id, face, 0, n, from, to);
 }
 
 /// Working memory for one row of n points.

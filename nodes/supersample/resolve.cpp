@@ -28,6 +28,7 @@ struct State {
   Rect window;
   int margin = 0;
   std::vector<RealPlane> planes;  // those of the output, in its order
+  bool copies = false;            // some are stored in another precision
 };
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
@@ -47,8 +48,9 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   State s = ctx.real([&]<class R>() {
     ResolveWeights<R> weights(filter, pattern.samples, pattern.period, pattern.x, pattern.y);
     const int margin = weights.margin();
-    return State{std::move(weights), from.window, margin, {}};
+    return State{std::move(weights), from.window, margin, {}, false};
   });
+  for (const RealPlane& plane : planes) s.copies = s.copies || plane.kind != real_kind(ctx.precision);
   s.planes = std::move(planes);
   return {std::move(s), {std::move(to)}};
 }
@@ -67,94 +69,98 @@ class Filler {
         read_(intersection(rect_.grown(m_), s.window)),
         in_(in.part(read_)),
         arena_(arena),
-        samples_(static_cast<std::size_t>(in.samples())),
-        n_(static_cast<std::size_t>(rect_.width())),
-        rows_(static_cast<std::size_t>(2 * m_ + 1)) {}
+        n_(static_cast<std::size_t>(rect_.width())) {}
 
   void fill() {
-    std::vector<std::size_t> wanted;
-    for (std::size_t p = 0; p < s_.planes.size(); ++p)
-      if (out_.has(static_cast<int>(p))) wanted.push_back(p);
-    for (const std::size_t p : wanted) {
-      gather(p);
-      find_flat();
+    for (std::size_t p = 0; p < s_.planes.size(); ++p) {
+      if (!out_.has(static_cast<int>(p))) continue;
+      const Source& source = sources_.emplace_back(gather(static_cast<int>(p)));
+      flat_.push_back(find_flat(source));
+      wanted_.push_back(static_cast<int>(p));
     }
-    std::vector<const R*> in(wanted.size() * samples_ * rows_);
-    std::vector<const std::uint32_t*> flat(wanted.size());
-    std::vector<R*> to(wanted.size());
+    std::vector<const R*> in(wanted_.size());
+    std::vector<const std::uint32_t*> flat(wanted_.size());
+    std::vector<R*> to(wanted_.size());
     for (int y = rect_.y0; y < rect_.y1; ++y) {
-      for (std::size_t i = 0; i < wanted.size(); ++i) {
-        for (std::size_t k = 0; k < samples_; ++k)
-          for (int dy = -m_; dy <= m_; ++dy)
-            in[(i * samples_ + k) * rows_ + static_cast<std::size_t>(dy + m_)] = row(i, k, y + dy);
+      for (std::size_t i = 0; i < wanted_.size(); ++i) {
+        in[i] = sources_[i].at(rect_.x0 - read_.x0, y - read_.y0);
         flat[i] = flat_[i].data() + static_cast<std::size_t>(y - rect_.y0) * n_;
-        to[i] = out_.row<R>(static_cast<int>(wanted[i]), 0, y);
+        to[i] = out_.row<R>(wanted_[i], 0, y);
       }
+      if (wanted_.empty()) return;
+      // Every plane lies the same way: all are the tile's own, or all are copies of the same shape.
       resolving::resolve_row<R>(weights_, {.x0 = rect_.x0,
                                            .y = y,
                                            .n = n_,
                                            .left = s_.window.x0 - rect_.x0,
                                            .right = s_.window.x1 - rect_.x0,
+                                           .top = s_.window.y0 - y,
+                                           .bottom = s_.window.y1 - y,
                                            .in = in,
+                                           .sample_stride = sources_[0].sample_stride,
+                                           .row_stride = sources_[0].row_stride,
                                            .flat = flat,
                                            .out = to});
     }
   }
 
  private:
-  std::size_t read_width() const { return static_cast<std::size_t>(read_.width()); }
+  // The samples of one plane in R; its origin is the top left corner of what is read.
+  struct Source {
+    const R* origin;
+    std::ptrdiff_t sample_stride, row_stride;
+    const R* at(int x, int y) const { return origin + y * row_stride + x; }
+  };
 
-  // The samples of a row from column rect.x0 on; null outside the window.
-  const R* row(std::size_t plane, std::size_t sample, int y) const {
-    if (y < read_.y0 || y >= read_.y1) return nullptr;
-    return sample_rows_[plane][static_cast<std::size_t>(y - read_.y0) * samples_ + sample] +
-           (rect_.x0 - read_.x0);
+  Source gather(int plane) {
+    const RealPlane from = s_.planes[static_cast<std::size_t>(plane)];
+    if (!s_.copies) return {in_.row<const R>(from.index, 0, read_.y0), in_.sample_stride(), in_.row_stride()};
+    const auto width = static_cast<std::size_t>(read_.width());
+    const std::span<R> copy = arena_.take<R>(static_cast<std::size_t>(read_.area() * in_.samples()));
+    std::size_t at = 0;
+    for (int k = 0; k < in_.samples(); ++k)
+      for (int y = read_.y0; y < read_.y1; ++y, at += width) {
+        const R* row = real_row<R>(in_, from, k, y, copy.subspan(at, width));
+        if (row != copy.data() + at) std::copy_n(row, width, copy.data() + at);
+      }
+    return {copy.data(), static_cast<std::ptrdiff_t>(read_.area()), static_cast<std::ptrdiff_t>(width)};
   }
 
-  // Rows of one plane in R, [y][sample], from column read.x0 on.
-  void gather(std::size_t plane) {
-    const bool copies = s_.planes[plane].kind != plane_kind_of<R>;
-    auto& rows = sample_rows_.emplace_back();
-    for (int y = read_.y0; y < read_.y1; ++y)
-      for (std::size_t k = 0; k < samples_; ++k)
-        rows.push_back(real_row<R>(in_, s_.planes[plane], static_cast<int>(k), y,
-                                   copies ? arena_.take<R>(read_width()) : std::span<R>()));
-  }
-
-  // Marks the pixels of the last plane that was gathered all of whose samples in reach have the same bits.
-  // First pixel by pixel, then along rows, then down columns; beyond the window the nearest column stands for
-  // what is not there.
-  void find_flat() {
+  // Marks the pixels all of whose samples in reach have the same bits. First pixel by pixel, then along rows,
+  // then down columns; beyond the window the nearest column stands for what is not there.
+  std::span<std::uint32_t> find_flat(const Source& source) {
     using Bits = kernels::BitsOf<R>;
-    const auto m = static_cast<std::size_t>(m_);
+    const auto m = static_cast<std::size_t>(m_), width = static_cast<std::size_t>(read_.width());
     const auto height = static_cast<std::size_t>(read_.height()), padded = n_ + 2 * m;
     const auto equal = arena_.take<std::uint32_t>(padded), across = arena_.take<std::uint32_t>(height * n_);
     const auto bits = arena_.take<Bits>(padded), centre = arena_.take<Bits>(height * n_);
     const auto skipped = static_cast<std::size_t>(read_.x0 - (rect_.x0 - m_));  // columns left of the window
-    std::vector<std::ptrdiff_t> steps;
+    steps_.clear();
     for (std::ptrdiff_t d = -m_; d <= m_; ++d)
-      if (d != 0) steps.push_back(d);
+      if (d != 0) steps_.push_back(d);
     for (std::size_t y = 0; y < height; ++y) {
-      find_equal_samples<R>(std::span<const R* const>(sample_rows_.back()).subspan(y * samples_, samples_),
-                            read_width(), equal.data() + skipped, bits.data() + skipped);
-      for (std::size_t i = 0; i < skipped; ++i) equal[i] = equal[skipped], bits[i] = bits[skipped];
-      const std::size_t last = skipped + read_width() - 1;
-      for (std::size_t i = last + 1; i < padded; ++i) equal[i] = equal[last], bits[i] = bits[last];
-      find_equal_neighbours<Bits>(equal.data() + m, bits.data() + m, steps, n_, across.data() + y * n_);
+      find_equal_samples<R>(source.at(0, static_cast<int>(y)), in_.samples(), source.sample_stride, width,
+                            equal.data() + skipped, bits.data() + skipped);
+      std::fill_n(equal.begin(), skipped, equal[skipped]);
+      std::fill_n(bits.begin(), skipped, bits[skipped]);
+      const std::size_t end = skipped + width;
+      std::fill(equal.begin() + static_cast<std::ptrdiff_t>(end), equal.end(), equal[end - 1]);
+      std::fill(bits.begin() + static_cast<std::ptrdiff_t>(end), bits.end(), bits[end - 1]);
+      find_equal_neighbours<Bits>(equal.data() + m, bits.data() + m, steps_, n_, across.data() + y * n_);
       std::copy_n(bits.data() + m, n_, centre.data() + y * n_);
     }
 
-    auto& flat =
-        flat_.emplace_back(arena_.take<std::uint32_t>(n_ * static_cast<std::size_t>(rect_.height())));
+    const auto flat = arena_.take<std::uint32_t>(n_ * static_cast<std::size_t>(rect_.height()));
     for (int y = rect_.y0; y < rect_.y1; ++y) {
-      steps.clear();
+      steps_.clear();
       for (int d = -m_; d <= m_; ++d)
         if (d != 0 && y + d >= read_.y0 && y + d < read_.y1)
-          steps.push_back(d * static_cast<std::ptrdiff_t>(n_));
+          steps_.push_back(d * static_cast<std::ptrdiff_t>(n_));
       const std::size_t at = static_cast<std::size_t>(y - read_.y0) * n_;
-      find_equal_neighbours<Bits>(across.data() + at, centre.data() + at, steps, n_,
+      find_equal_neighbours<Bits>(across.data() + at, centre.data() + at, steps_, n_,
                                   flat.data() + static_cast<std::size_t>(y - rect_.y0) * n_);
     }
+    return flat;
   }
 
   const State& s_;
@@ -164,9 +170,11 @@ class Filler {
   const Rect rect_, read_;
   const Tile in_;
   Arena& arena_;
-  const std::size_t samples_, n_, rows_;
-  std::vector<std::vector<const R*>> sample_rows_;  // of each wanted plane
+  const std::size_t n_;
+  std::vector<int> wanted_;  // planes that somebody reads; of each:
+  std::vector<Source> sources_;
   std::vector<std::span<std::uint32_t>> flat_;
+  std::vector<std::ptrdiff_t> steps_;
 };
 
 void tile(const State& s, const TilesOf<Inputs>& in, const TilesOf<Outputs>& out, Arena& arena) {

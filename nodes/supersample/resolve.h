@@ -31,12 +31,12 @@ void resolve_row(const kernels::ResolveWeights<R>& weights, const kernels::Resol
 }
 
 template <std::floating_point R>
-void find_equal_samples(std::span<const R* const> sample, std::size_t n, std::uint32_t* equal,
-                        kernels::BitsOf<R>* bits) {
+void find_equal_samples(const R* first, int samples, std::ptrdiff_t stride, std::size_t n,
+                        std::uint32_t* equal, kernels::BitsOf<R>* bits) {
   if constexpr (sizeof(R) == 4)
-    kernels::simd::find_equal_samples(sample, n, equal, bits);
+    kernels::simd::find_equal_samples(first, samples, stride, n, equal, bits);
   else
-    kernels::find_equal_samples(sample, n, equal, bits);
+    kernels::find_equal_samples(first, samples, stride, n, equal, bits);
 }
 
 template <class Bits>

@@ -220,7 +220,8 @@ bool take(std::uint32_t* left, std::size_t samples, std::size_t n, std::span<con
   return kernels::take_face(left, samples, n, x, n, in, face, mean) || any;
 }
 
-void put(const std::uint32_t* id, const std::uint32_t* face, std::size_t n, const float* from, float* to) {
+void put(const std::uint32_t* id, const std::uint32_t* face, std::size_t n, const ColorRows<float>& from,
+         const ColorRows<float>& to) {
   const D d;
   const Du du;
   const std::size_t lanes = hn::Lanes(d);
@@ -229,10 +230,14 @@ void put(const std::uint32_t* id, const std::uint32_t* face, std::size_t n, cons
     const auto f = hn::LoadU(du, face + x);
     const auto match = hn::And(hn::Eq(hn::LoadU(du, id + x), f), hn::Ne(f, hn::Set(du, nothing_there)));
     if (hn::AllFalse(du, match)) continue;
-    hn::StoreU(hn::IfThenElse(hn::RebindMask(d, match), hn::LoadU(d, from + x), hn::LoadU(d, to + x)), d,
-               to + x);
+    const M here = hn::RebindMask(d, match);
+    for (std::size_t k = 0; k < 4; ++k) {
+      float* out = to.plane[k];
+      if (out == nullptr) continue;
+      hn::StoreU(hn::IfThenElse(here, hn::LoadU(d, from.plane[k] + x), hn::LoadU(d, out + x)), d, out + x);
+    }
   }
-  if (x < n) kernels::put_face(id + x, face + x, n - x, from + x, to + x);
+  kernels::put_face(id, face, x, n, from, to);
 }
 
 }  // namespace
@@ -260,8 +265,8 @@ bool take_face(std::uint32_t* left, std::size_t samples, std::size_t n, std::spa
                std::uint32_t* face, std::span<float* const> mean) {
   return HWY_DYNAMIC_DISPATCH(take)(left, samples, n, in, face, mean);
 }
-void put_face(const std::uint32_t* id, const std::uint32_t* face, std::size_t n, const float* from,
-              float* to) {
+void put_face(const std::uint32_t* id, const std::uint32_t* face, std::size_t n, const ColorRows<float>& from,
+              const ColorRows<float>& to) {
   HWY_DYNAMIC_DISPATCH(put)(id, face, n, from, to);
 }
 

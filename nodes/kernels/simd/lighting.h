@@ -18,7 +18,7 @@ void reflect_light(const SurfaceColors<float>& colors, const LightInput<float>& 
 bool take_face(std::uint32_t* left, std::size_t samples, std::size_t n, std::span<const float* const> in,
                std::uint32_t* face, std::span<float* const> mean);
 
-void put_face(const std::uint32_t* id, const std::uint32_t* face, std::size_t n, const float* from,
-              float* to);
+void put_face(const std::uint32_t* id, const std::uint32_t* face, std::size_t n, const ColorRows<float>& from,
+              const ColorRows<float>& to);
 
 }  // namespace frustum::kernels::simd
