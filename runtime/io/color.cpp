@@ -120,6 +120,11 @@ ocio::ConstConfigRcPtr read_config(const std::string& path, const std::string& n
   }
 }
 
+std::string lower(std::string s) {
+  std::transform(s.begin(), s.end(), s.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return s;
+}
+
 ColorConversion identity_conversion() {
   return ColorConversion(std::make_shared<const ColorConversion::Impl>(ColorConversion::Impl{true, true, {}, {}}));
 }
@@ -210,7 +215,8 @@ std::string ColorConfig::resolve(std::string_view name) const {
   const std::vector<std::string> more = aliases();
   const std::string list = fmt::format("{}", fmt::join(known, ", "));
   known.insert(known.end(), more.begin(), more.end());
-  const auto near = nearest_names(name, known);
+  for (std::string& k : known) k = lower(std::move(k));  // names are found in any case, and so they are near
+  const auto near = nearest_names(lower(std::string(name)), known);
   throw NodeError("unknown_color_space",
                   fmt::format("'{}' is not a colour space of {}{}; known: {}", name,
                               impl_->embedded() ? "the embedded configuration" : impl_->name,

@@ -1,0 +1,126 @@
+#include "nodes/texture/image.h"
+
+#include "nodes/all_nodes.h"
+#include "runtime/buffers/image.h"
+#include "runtime/buffers/texture.h"
+#include "tests/support/run_node.h"
+#include "tests/support/ulps.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+#include <tbb/global_control.h>
+
+#include <cmath>
+
+namespace frustum {
+namespace {
+
+Image constant(Rect window, PlaneList planes, std::vector<float> values, std::string space, Alpha alpha) {
+  const Raster r(Frame{.window = window, .planes = std::move(planes), .color_space = std::move(space), .alpha = alpha});
+  for (int p = 0; p < static_cast<int>(values.size()); ++p)
+    for (int y = window.y0; y < window.y1; ++y)
+      std::fill_n(r.view().row<float>(p, 0, y), window.width(), values[static_cast<std::size_t>(p)]);
+  return {r};
+}
+
+MipPyramid texture_of(Image image, const Json& params = Json::object()) {
+  const auto out = test::run_node(nodes::texture_image(), params, {{std::make_shared<const Image>(std::move(image))}});
+  return std::get<MipPyramid>(out.at(0).as<Texture>()->source);
+}
+
+TEST(TextureImage, CellsCoverEveryTexelOnce) {
+  for (int n = 1; n < 40; ++n) {
+    const int m = std::max(1, n / 2);
+    std::vector<double> covered(static_cast<std::size_t>(n));
+    for (int i = 0; i < m; ++i) {
+      const CellSpan s = cell_span(i, n, m);
+      double sum = 0;
+      for (int k = s.first; k <= s.last; ++k) {
+        const double part = k == s.first ? s.first_part : k == s.last ? s.last_part : 1;
+        covered[static_cast<std::size_t>(k)] += part, sum += part;
+      }
+      EXPECT_NEAR(sum, static_cast<double>(n) / m, 1e-12);
+    }
+    for (const double c : covered) EXPECT_NEAR(c, 1, 1e-12) << n;
+  }
+}
+
+TEST(TextureImage, HalvesByArea) {
+  const float row[] = {1, 0, 0, 1, 2, 0, 0, 1, 6, 0, 0, 1, 8, 0, 0, 1, 3, 0, 0, 1};  // five texels, R = 1 2 6 8 3
+  float out[8];
+  halve_row(row, 5, 1, 0, out);
+  EXPECT_FLOAT_EQ(out[0], (1 + 2 + 6 * 0.5f) / 2.5f);
+  EXPECT_FLOAT_EQ(out[4], (6 * 0.5f + 8 + 3) / 2.5f);
+  EXPECT_EQ(out[3], 1);
+}
+
+TEST(TextureImage, EveryLevelKeepsTheMean) {
+  const Raster r(Frame{.window = {3, -2, 24, 11}, .planes = {{"R"}, {"G"}, {"B"}}, .color_space = "lin_rec709"});
+  test::Random random(3);
+  double sum = 0;
+  for (int y = -2; y < 11; ++y)
+    for (int x = 0; x < 21; ++x) sum += static_cast<double>(r.view().row<float>(0, 0, y)[x] = static_cast<float>(random.uniform()));
+  const MipPyramid p = texture_of({r});
+  ASSERT_EQ(p.levels.size(), 5u);
+  const int sizes[5][2] = {{21, 13}, {10, 6}, {5, 3}, {2, 1}, {1, 1}};
+  for (std::size_t l = 0; l < 5; ++l) {
+    EXPECT_EQ(p.levels[l].width, sizes[l][0]);
+    EXPECT_EQ(p.levels[l].height, sizes[l][1]);
+    double mean = 0;
+    for (std::size_t i = 0; i < p.levels[l].rgba.size(); i += 4) mean += static_cast<double>(p.levels[l].rgba[i]);
+    EXPECT_NEAR(mean * 4 / static_cast<double>(p.levels[l].rgba.size()), sum / (21 * 13), 1e-6) << l;
+    EXPECT_EQ(p.levels[l].rgba[3], 1) << "no A means opaque";
+  }
+}
+
+TEST(TextureImage, BecomesLinearWithoutItsAlpha) {
+  // sRGB 0.5 is 0.21404 linear; premultiplied by 1/4 it is stored as 0.125.
+  const float linear = 0.21404114f;
+  const PlaneList rgba{{"R"}, {"G"}, {"B"}, {"A"}};
+  const MipPyramid premultiplied = texture_of(constant({0, 0, 2, 2}, rgba, {0.125f, 0.125f, 0.125f, 0.25f}, "srgb", Alpha::premultiplied));
+  const MipPyramid straight = texture_of(constant({0, 0, 2, 2}, rgba, {0.5f, 0.5f, 0.5f, 0.25f}, "srgb", Alpha::straight));
+  for (const MipPyramid* p : {&premultiplied, &straight})
+    for (const auto& level : p->levels) {
+      EXPECT_NEAR(level.rgba[0], linear * 0.25f, 1e-7);
+      EXPECT_EQ(level.rgba[3], 0.25f);
+    }
+  EXPECT_EQ(texture_of(constant({0, 0, 2, 2}, rgba, {0.125f, 0, 0, 0.25f}, "", Alpha::premultiplied)).levels[0].rgba[0], 0.125f);
+}
+
+TEST(TextureImage, OnePlaneIsGreyAndTheTopRowComesFirst) {
+  const Raster r(Frame{.window = {0, 0, 1, 2}, .planes = {{"height"}}});
+  r.view().row<float>(0, 0, 0)[0] = 0.25f, r.view().row<float>(0, 0, 1)[0] = 0.75f;
+  const MipPyramid p = texture_of({r}, {{"wrap_u", "clamp"}, {"wrap_v", "mirror"}, {"pyramid", false}});
+  ASSERT_EQ(p.levels.size(), 1u);
+  EXPECT_EQ(p.levels[0].rgba, (std::vector<float>{0.25f, 0.25f, 0.25f, 1, 0.75f, 0.75f, 0.75f, 1}));
+  EXPECT_EQ(p.wrap_u, Wrap::clamp);
+  EXPECT_EQ(p.wrap_v, Wrap::mirror);
+}
+
+TEST(TextureImage, TheNumberOfThreadsDoesNotShow) {
+  const auto card = test::run_node(nodes::io_load_image(), {{"file", "card.png"}}, {}, nullptr, std::string(FRUSTUM_SOURCE_DIR) + "/graphs/data");
+  std::vector<Digest> digests;
+  for (const std::size_t threads : {1u, 2u, 7u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    digests.push_back(test::run_node(nodes::texture_image(), Json::object(), {card}).at(0).digest());
+  }
+  EXPECT_EQ(digests[0], digests[1]);
+  EXPECT_EQ(digests[0], digests[2]);
+}
+
+std::string problem(Image image) {
+  return test::run_error(nodes::texture_image(), Json::object(), {{std::make_shared<const Image>(std::move(image))}}).first;
+}
+
+TEST(TextureImage, RefusesWhatIsNoPicture) {
+  EXPECT_EQ(problem({}), "empty_image");
+  EXPECT_EQ(problem({Raster(Frame{.window = {0, 0, 1, 1}, .planes = {{"R"}, {"Z"}}})}), "missing_plane");
+  EXPECT_EQ(problem({Raster(Frame{.window = {0, 0, 1, 1}, .planes = {{"id", PlaneKind::u32}}})}), "wrong_plane_kind");
+  auto four = std::make_shared<SamplePattern>();
+  four->samples = 4, four->x.assign(4, 0), four->y.assign(4, 0);
+  EXPECT_EQ(problem({Raster(Frame{.window = {0, 0, 1, 1}, .pattern = four, .planes = {{"R"}, {"G"}, {"B"}}})}), "sampled_image");
+  EXPECT_EQ(problem(constant({0, 0, 1, 1}, {{"R"}, {"G"}, {"B"}}, {0, 0, 0}, "house_log", Alpha::none)), "unknown_color_space");
+}
+
+}  // namespace
+}  // namespace frustum
