@@ -4,7 +4,6 @@
 // whoever commits it to judge.
 #include "nodes/all_nodes.h"
 #include "runtime/graph/load.h"
-#include "tests/support/stand_in_nodes.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -31,14 +30,7 @@ std::string content(const fs::path& path) {
 }
 
 const Registry& registry() {
-  static const Registry all = [] {
-    std::vector<NodeType> types = all_node_types();
-    std::set<std::string> names;
-    for (const NodeType& t : types) names.insert(t.name);
-    for (const auto& [name, type] : test::stand_in_nodes())
-      if (!names.contains(name)) types.push_back(type);
-    return Registry(std::move(types));
-  }();
+  static const Registry all(all_node_types());
   return all;
 }
 
