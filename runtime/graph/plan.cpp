@@ -47,7 +47,16 @@ class Planner {
   }
 
   void make_whole(PortRef p, Whole why) {
-    if (is_pixel(p.node) && !given(p)) whole_.emplace(p, why);
+    if (!is_pixel(p.node) || given(p)) return;
+    const auto [at, added] = whole_.emplace(p, why);
+    if (!added && at->second == Whole::demanded) at->second = why;  // the stronger reason: it needs every pixel
+  }
+
+  // Whether readers by tiles find the port in memory.
+  bool ends_stream(PortRef p) const {
+    if (given(p)) return true;
+    const auto at = whole_.find(p);
+    return at != whole_.end() && !(options_.cropped && at->second == Whole::demanded);
   }
 
   void demand_ports() {
@@ -84,7 +93,7 @@ class Planner {
       if (!notes_[i].wanted) continue;
       for_each_link(i, [&](PortRef from, bool) {
         if (given(from)) return;
-        notes_[i].level = std::max(notes_[i].level, notes_[from.node].level + (!whole_.empty() && whole_.contains(from) ? 1 : 0));
+        notes_[i].level = std::max(notes_[i].level, notes_[from.node].level + (!whole_.empty() && ends_stream(from) ? 1 : 0));
       });
     }
   }
@@ -93,7 +102,7 @@ class Planner {
   void stream_closure(std::size_t node, std::set<std::size_t>& nodes) const {
     if (!nodes.insert(node).second) return;
     for_each_link(node, [&](PortRef from, bool streams) {
-      if (streams && !given(from) && !whole_.contains(from)) stream_closure(from.node, nodes);
+      if (streams && !ends_stream(from)) stream_closure(from.node, nodes);
     });
   }
 
@@ -129,9 +138,9 @@ class Planner {
     for (const std::size_t o : demand_.outputs) {
       Group g{.outputs = {o}};
       for (const OutputLayer& layer : graph_.outputs[o].layers) {
-        const bool whole = whole_.contains(layer.from);
-        g.level = std::max(g.level, notes_[layer.from.node].level + (whole ? 1 : 0));
-        if (is_pixel(layer.from.node) && !whole && !given(layer.from)) stream_closure(layer.from.node, g.nodes);
+        const bool whole = ends_stream(layer.from);
+        g.level = std::max(g.level, notes_[layer.from.node].level + (whole && !given(layer.from) ? 1 : 0));
+        if (is_pixel(layer.from.node) && !whole) stream_closure(layer.from.node, g.nodes);
       }
       add_group(std::move(g));
     }
@@ -170,7 +179,7 @@ class Planner {
   void wait_for(PortRef from, bool streams) {
     if (given(from)) return;
     const auto whole = whole_.empty() ? step_of_whole_.end() : step_of_whole_.find(from);
-    if (whole != step_of_whole_.end() && !streams) waits_.push_back(whole->second);
+    if (whole != step_of_whole_.end() && !streams && ends_stream(from)) waits_.push_back(whole->second);
     else waits_.push_back(step_of_node_[from.node]);
   }
 
@@ -184,7 +193,8 @@ class Planner {
     for (const std::size_t n : p.nodes) {
       waits_.push_back(step_of_node_[n]);
       for_each_link(n, [&](PortRef from, bool) {
-        if (const auto w = step_of_whole_.find(from); w != step_of_whole_.end()) waits_.push_back(w->second);
+        const auto w = step_of_whole_.find(from);
+        if (w != step_of_whole_.end() && ends_stream(from)) waits_.push_back(w->second);
       });
     }
     for (const std::size_t o : p.outputs)

@@ -55,6 +55,9 @@ struct Plan {
 
 struct PlanOptions {
   bool fuse = true;                    // false: every pixel port that is read becomes whole
+  // A region is asked for: ports that are whole only because they are demanded hold no more than that, so nodes that read
+  // them by tiles do not read them from memory.
+  bool cropped = false;
   // Ports whose buffers are there already (from the cache): nothing is run for them.
   std::function<bool(PortRef)> given = {};
 };

@@ -26,7 +26,7 @@ class Runner {
   RunResult run() {
     find_in_cache();
     state_.plan = make_plan(state_.graph, state_.options.demand,
-                            {.fuse = state_.options.fuse, .given = [this](PortRef p) { return static_cast<bool>(state_.buffer(p)); }});
+                            {.fuse = state_.options.fuse, .cropped = state_.options.region.has_value(), .given = [this](PortRef p) { return static_cast<bool>(state_.buffer(p)); }});
     wanted_.resize(state_.graph.nodes.size());
     for (const PlannedNode& n : state_.plan.nodes) wanted_[n.node] = n.wanted_outputs;
     announce_uses();

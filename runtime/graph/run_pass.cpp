@@ -240,7 +240,8 @@ class Pass {
       const Buffer b = graph_.port(port).types.front()->from_raster(*whole_[i]);
       if (complete && state_.options.cache != nullptr)
         state_.options.cache->insert(output_key(state_.keys[port.node], port.port), {{b}, nullptr});
-      state_.publish(port, b);
+      if (complete) state_.publish(port, b);
+      else state_.publish_part(port, b);
     }
     state_.ledger.remove_bytes(early_bytes_);
   }

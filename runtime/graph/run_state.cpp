@@ -5,6 +5,22 @@
 #include <algorithm>
 
 namespace frustum {
+namespace {
+
+// A demanded port that a node read whole is there in full; the caller gets the region asked for.
+Buffer cut_to_region(const Buffer& b, const std::optional<Rect>& region) {
+  if (!b || !region || !b.type().is_pixels()) return b;
+  const Raster& all = b.type().raster(b.data());
+  const Rect part = intersection(all.frame().window, *region);
+  if (part == all.frame().window) return b;
+  Frame f = all.frame();
+  f.window = part;
+  const Raster cut(std::move(f));
+  copy(all.view(part), cut.view());
+  return b.type().from_raster(cut);
+}
+
+}  // namespace
 
 RunState::RunState(const Graph& g, const RunOptions& o)
     : graph(g), options(o), ready_(g.nodes.size()), ready_uses_(g.nodes.size()) {
@@ -20,6 +36,12 @@ void RunState::publish(PortRef p, Buffer b) {
   if (!b) return;
   ledger.add(b);
   buffers_[p.node][p.port] = std::move(b);
+}
+
+void RunState::publish_part(PortRef p, Buffer b) {
+  ledger.add(b);
+  const std::lock_guard lock(mutex_);
+  parts_[p] = std::move(b);
 }
 
 void RunState::end_use(PortRef p) {
@@ -58,7 +80,8 @@ void RunState::take_results(RunResult& result) {
   for (auto& [order, d] : problems_) result.problems.add(std::move(d));
   const auto first = std::min_element(culprits_.begin(), culprits_.end(), earlier);
   if (first != culprits_.end()) result.culprit = std::move(first->second);
-  for (const PortRef p : options.demand.ports) result.buffers[p] = buffer(p);
+  for (const PortRef p : options.demand.ports)
+    result.buffers[p] = parts_.contains(p) ? parts_[p] : cut_to_region(buffer(p), options.region);
   result.peak_bytes = ledger.peak();
 }
 

@@ -5,6 +5,7 @@
 #include "runtime/graph/run.h"
 
 #include <atomic>
+#include <map>
 #include <mutex>
 
 namespace frustum {
@@ -28,6 +29,8 @@ class RunState {
   // ----- published results
   Buffer buffer(PortRef p) const { return buffers_[p.node][p.port]; }  // empty where not there (yet, or any more)
   void publish(PortRef p, Buffer b);
+  // Only for the caller: a part of the port's pixels, which no node may read as if it were all.
+  void publish_part(PortRef p, Buffer b);
   std::shared_ptr<const ReadyNode> ready(std::size_t node) const { return ready_[node]; }
   void set_ready(std::size_t node, std::shared_ptr<const ReadyNode> r) { ready_[node] = std::move(r); }
 
@@ -55,6 +58,7 @@ class RunState {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::vector<std::vector<Buffer>> buffers_;
+  std::map<PortRef, Buffer> parts_;
   std::vector<std::shared_ptr<const ReadyNode>> ready_;
   std::vector<std::vector<std::atomic<int>>> uses_;
   std::vector<std::atomic<int>> ready_uses_;

@@ -126,6 +126,22 @@ TEST(Run, ARegionHasTheBytesOfThatPartOfTheWhole) {
     ASSERT_EQ(std::memcmp(a.view().row<const float>(0, 0, y), b.view(a.frame().window).row<const float>(0, 0, y), 61 * 4), 0) << y;
 }
 
+TEST(Run, ARegionOfSeveralPortsOfOneChainIsCutFromEach) {
+  GraphMaker g = diamond();
+  g.add("total", "test.total", {{"image", "soft"}});
+  const std::vector<PortRef> ports{g.port("noise"), g.port("soft"), g.port("softer"), g.port("sum"), g.port("total")};
+  const RunResult whole = run_graph(g.graph, {.demand = {.ports = ports}});
+  const RunResult part = run_graph(g.graph, {.demand = {.ports = ports}, .region = Rect{70, 33, 71, 34}});
+  ASSERT_EQ(part.end, RunResult::End::done) << to_text(part.problems);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Raster& a = part.buffers.at(ports[i]).as<Image>()->raster;
+    const Raster& b = whole.buffers.at(ports[i]).as<Image>()->raster;
+    EXPECT_EQ(a.frame().window, (Rect{70, 33, 71, 34}));
+    EXPECT_EQ(a.at<float>(0, 0, 70, 33), b.at<float>(0, 0, 70, 33)) << g.graph.name(ports[i]);
+  }
+  EXPECT_EQ(part.buffers.at(ports[4]).as<Number>()->value, whole.buffers.at(ports[4]).as<Number>()->value);
+}
+
 TEST(Run, RunsNothingThatNobodyAskedFor) {
   GraphMaker g = diamond();
   g.add("bad", "test.number", {}, R"({"value": -1})");
