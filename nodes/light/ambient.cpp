@@ -29,7 +29,7 @@ NodeType nodes::light_ambient() {
       .covers(55, 62)
       .param("color", &Params::color, "Linear Rec.709; raising it brightens what no other light reaches.",
              {.range = at_least(0)})
-      .output("light", &Outputs::light, "The light.");
+      .output("light", &Outputs::light, "The light, for the lights of shade.surface.");
 }
 
 }  // namespace frustum

@@ -33,7 +33,7 @@ NodeType nodes::light_directional() {
              "The way the light travels, in world space; its length does not matter.")
       .param("color", &Params::color, "Linear Rec.709; a white surface facing the light gets this colour.",
              {.range = at_least(0)})
-      .output("light", &Outputs::light, "The light.");
+      .output("light", &Outputs::light, "The light, for the lights of shade.surface.");
 }
 
 }  // namespace frustum

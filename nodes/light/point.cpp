@@ -40,7 +40,7 @@ NodeType nodes::light_point() {
       .param("attenuation", &Params::attenuation,
              "x, y, z: the colour is divided by x + y d + z d^2, d the distance; raising one dims the light.",
              {.range = at_least(0)})
-      .output("light", &Outputs::light, "The light.");
+      .output("light", &Outputs::light, "The light, for the lights of shade.surface.");
 }
 
 }  // namespace frustum

@@ -47,7 +47,7 @@ NodeType nodes::shade_material() {
              {.range = at_least(0)})
       .param("shininess", &Params::shininess,
              "Exponent of the highlight; raising it makes the highlight smaller.", {.range = between(0, 1e6)})
-      .output("material", &Outputs::material, "The material.");
+      .output("material", &Outputs::material, "The material, for shade.surface.");
 }
 
 }  // namespace frustum

@@ -1,0 +1,29 @@
+// A buffer as a file: pixels through the same sinks as a run's outputs, tables as CSV.
+#pragma once
+
+#include "runtime/core/buffer.h"
+
+#include <string>
+
+namespace frustum {
+
+// One sample of every pixel, as a raster without a pattern. A raster with one value a pixel is returned as
+// it is.
+Raster one_sample(const Raster& raster, int sample);
+
+// Writes all planes as one layer; the raster has one value a pixel. Throws WorldError where the file
+// cannot be made, NodeError where the format cannot hold the planes.
+void save_raster(const Raster& raster, const std::string& path);
+
+// The pixels of an image file. Throws WorldError where it cannot be read.
+Raster load_raster(const std::string& path);
+
+// RFC 4180, with a line of column names, from the table form of a buffer; numbers in the shortest text
+// that reads back to the same value.
+std::string csv_text(const Json& table);
+
+// Pixels (the given sample of each) to an image file, anything else that has a table form to a .csv. Throws
+// NodeError("cannot_save") where the buffer is neither.
+void save_buffer(const Buffer& buffer, const std::string& path, int sample);
+
+}  // namespace frustum

@@ -1,0 +1,143 @@
+#include "runtime/app/files.h"
+
+#include "runtime/core/error.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace frustum {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void fail(std::string code, std::string_view what, const fs::path& path) {
+  throw WorldError(std::move(code),
+                   fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(errno)));
+}
+
+void add_unique(std::vector<std::string>& list, const fs::path& folder) {
+  std::error_code none;
+  const fs::path real = fs::weakly_canonical(folder, none);
+  if (!fs::is_directory(real, none)) return;
+  if (std::find(list.begin(), list.end(), real.string()) == list.end()) list.push_back(real.string());
+}
+
+// Whether `name` matches a pattern in which `*` stands for any run of characters.
+bool matches(std::string_view name, std::string_view pattern) {
+  if (pattern.empty()) return name.empty();
+  if (pattern.front() == '*') {
+    for (std::size_t skip = 0; skip <= name.size(); ++skip)
+      if (matches(name.substr(skip), pattern.substr(1))) return true;
+    return false;
+  }
+  return !name.empty() && name.front() == pattern.front() && matches(name.substr(1), pattern.substr(1));
+}
+
+}  // namespace
+
+std::string read_text(const fs::path& path) {
+  std::error_code none;
+  if (fs::is_directory(path, none)) {
+    errno = EISDIR;
+    fail("cannot_read", "read", path);
+  }
+  std::ifstream in(path, std::ios::binary);
+  if (!in) fail("cannot_read", "read", path);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (in.bad()) fail("cannot_read", "read", path);
+  return text;
+}
+
+void write_text(const fs::path& path, std::string_view text) {
+  std::error_code problem;
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), problem);
+  fs::path temporary = path;
+  temporary += fmt::format(".{}.tmp", ::getpid());
+  std::ofstream out(temporary, std::ios::binary);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  if (!out) {
+    const int reason = errno;
+    fs::remove(temporary, problem);
+    errno = reason;
+    fail("cannot_write", "write", path);
+  }
+  fs::rename(temporary, path, problem);
+  if (problem) {
+    errno = problem.value();
+    fs::remove(temporary, problem);
+    fail("cannot_write", "write", path);
+  }
+}
+
+bool write_if_changed(const fs::path& path, std::string_view text) {
+  std::error_code none;
+  if (fs::is_regular_file(path, none) && read_text(path) == text) return false;
+  write_text(path, text);
+  return true;
+}
+
+fs::path executable_path() {
+  std::error_code none;
+  return fs::read_symlink("/proc/self/exe", none);
+}
+
+std::optional<fs::path> source_root(const fs::path& start) {
+  std::error_code none;
+  for (fs::path at = fs::weakly_canonical(fs::absolute(start, none), none);; at = at.parent_path()) {
+    if (fs::is_directory(at / "graphs" / "lib", none) && fs::is_directory(at / "nodes", none)) return at;
+    if (at == at.parent_path()) return std::nullopt;
+  }
+}
+
+std::vector<std::string> library_folders(const fs::path& graph) {
+  std::vector<std::string> folders;
+  // Read once, before any thread that could change the environment.
+  if (const char* list = std::getenv("FRUSTUM_LIB")) {  // NOLINT(concurrency-mt-unsafe)
+    std::string_view rest = list;
+    while (!rest.empty()) {
+      const auto colon = rest.find(':');
+      if (colon != 0) add_unique(folders, fs::path(rest.substr(0, colon)));
+      rest.remove_prefix(colon == std::string_view::npos ? rest.size() : colon + 1);
+    }
+  }
+  const fs::path program = executable_path().parent_path();
+  if (!program.empty()) {
+    add_unique(folders, program.parent_path() / "share" / "frustum" / "graphs" / "lib");
+    if (const auto root = source_root(program)) add_unique(folders, *root / "graphs" / "lib");
+  }
+  if (const auto root = source_root(graph.has_parent_path() ? graph.parent_path() : fs::path(".")))
+    add_unique(folders, *root / "graphs" / "lib");
+  return folders;
+}
+
+std::vector<fs::path> matching_files(const fs::path& pattern) {
+  if (pattern.string().find('*') == std::string::npos) return {pattern};
+  std::vector<fs::path> found{pattern.root_path()};
+  for (const fs::path& part : pattern.relative_path()) {
+    std::vector<fs::path> deeper;
+    for (const fs::path& at : found) {
+      if (part.string().find('*') == std::string::npos) {
+        deeper.push_back(at / part);
+        continue;
+      }
+      std::error_code none;
+      for (const auto& entry : fs::directory_iterator(at.empty() ? fs::path(".") : at, none))
+        if (matches(entry.path().filename().string(), part.string()))
+          deeper.push_back(at / entry.path().filename());
+    }
+    found = std::move(deeper);
+  }
+  std::error_code none;
+  std::erase_if(found, [&](const fs::path& p) { return !fs::exists(p, none); });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace frustum

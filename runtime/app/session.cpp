@@ -1,0 +1,99 @@
+#include "runtime/app/session.h"
+
+#include "nodes/all_nodes.h"
+#include "runtime/app/files.h"
+#include "runtime/io/color.h"
+#include "runtime/io/image_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace frustum {
+namespace {
+
+void report_unknown(const Graph& graph, std::string_view address, Diagnostics& problems) {
+  std::vector<std::string> known = graph.addresses();
+  problems.add({.code = "unknown_address",
+                .pointer = "",
+                .message = fmt::format("'{}' is neither an output nor a port of this graph", address),
+                .expected = "an output's name, or NODE.PORT",
+                .got = std::string(address),
+                .suggestions = nearest_names(address, known),
+                .file = graph.file});
+}
+
+// The ports that the graph's own outputs without a file name. Other names are of ports of graphs used as
+// nodes: they have a dot, or are the id that the nodes inside begin with.
+std::vector<PortRef> named_ports(const Graph& graph) {
+  std::vector<PortRef> ports;
+  for (const PortName& n : graph.port_names) {
+    const auto inside = [&](const GraphNode& node) { return node.id.starts_with(n.name + "/"); };
+    if (n.name.find_first_of("./") == std::string::npos &&
+        std::none_of(graph.nodes.begin(), graph.nodes.end(), inside))
+      ports.push_back(n.port);
+  }
+  return ports;
+}
+
+}  // namespace
+
+Session::Session() : registry_(all_node_types()) {}
+
+Loaded Session::load(const std::string& path, LoadOptions options) const {
+  if (options.library_folders.empty()) options.library_folders = library_folders(path);
+  if (!options.to_linear) options.to_linear = to_linear_rec709;
+  return load_graph(path, registry_, options);
+}
+
+RunResult Session::run(const Graph& graph, RunOptions options, bool keep) {
+  if (!options.make_sink) options.make_sink = open_image_sink;
+  options.cache = keep ? &cache_ : nullptr;
+  return run_graph(graph, options);
+}
+
+std::vector<PortRef> end_ports(const Graph& graph) {
+  std::vector<bool> feeds(graph.nodes.size(), false);
+  for (const GraphNode& node : graph.nodes)
+    for (const auto& list : node.inputs)
+      for (const Source& source : list)
+        if (const auto* from = std::get_if<PortRef>(&source)) feeds[from->node] = true;
+  std::vector<PortRef> ends;
+  for (std::size_t n = 0; n < graph.nodes.size(); ++n)
+    for (std::size_t p = 0; !feeds[n] && p < graph.nodes[n].type->outputs.size(); ++p) ends.push_back({n, p});
+  return ends;
+}
+
+Demand demand_of(const Graph& graph, std::span<const std::string> wanted, Diagnostics& problems) {
+  Demand demand;
+  const auto add_output = [&](std::size_t i) {
+    if (std::find(demand.outputs.begin(), demand.outputs.end(), i) == demand.outputs.end())
+      demand.outputs.push_back(i);
+  };
+  for (const std::string& name : wanted) {
+    if (const GraphOutput* output = graph.find_output(name))
+      add_output(static_cast<std::size_t>(output - graph.outputs.data()));
+    else if (const auto port = graph.find_port(name))
+      demand.ports.push_back(*port);
+    else
+      report_unknown(graph, name, problems);
+  }
+  if (!wanted.empty()) return demand;
+  for (std::size_t i = 0; i < graph.outputs.size(); ++i) add_output(i);
+  demand.ports = named_ports(graph);
+  if (demand.ports.empty() && graph.outputs.empty()) demand.ports = end_ports(graph);
+  return demand;
+}
+
+std::optional<PortRef> port_of(const Graph& graph, std::string_view address, Diagnostics& problems) {
+  if (const auto port = graph.find_port(address)) return port;
+  if (const GraphOutput* output = graph.find_output(address)) {
+    for (const OutputLayer& layer : output->layers)
+      if (layer.name.empty()) return layer.from;
+    if (!output->layers.empty()) return output->layers.front().from;
+  }
+  report_unknown(graph, address, problems);
+  return std::nullopt;
+}
+
+}  // namespace frustum

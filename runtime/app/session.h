@@ -1,0 +1,48 @@
+// What the command line and the studio both hold: the node types, the libraries, the cache, load and run
+// with the doors to files and colours already in place.
+#pragma once
+
+#include "runtime/graph/load.h"
+#include "runtime/graph/run.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace frustum {
+
+class Session {
+ public:
+  // Every node type of this build.
+  Session();
+
+  const Registry& registry() const { return registry_; }
+  MemoryCache& cache() { return cache_; }
+
+  // load_graph() with this build's libraries and colours filled into `options`. Throws WorldError where
+  // the file cannot be read.
+  Loaded load(const std::string& path, LoadOptions options = {}) const;
+
+  // run_graph() with sinks, and with this session's cache unless `keep` is false.
+  RunResult run(const Graph&, RunOptions options, bool keep = true);
+
+ private:
+  Registry registry_;
+  MemoryCache cache_;
+};
+
+// The end ports of a graph: every output port of the nodes that feed no other node.
+std::vector<PortRef> end_ports(const Graph&);
+
+// What --want asks for: outputs with a file are written, other outputs and addresses of ports are kept as
+// buffers. Without any, every output of the graph; of a graph without outputs, its end ports. An unknown
+// name is reported with near ones.
+Demand demand_of(const Graph&, std::span<const std::string> wanted, Diagnostics& problems);
+
+// The port named by `address`, or by an output's name (its main layer, else its first); unknown names are
+// reported.
+std::optional<PortRef> port_of(const Graph&, std::string_view address, Diagnostics& problems);
+
+}  // namespace frustum

@@ -1,0 +1,98 @@
+// What the commands share. Each lives in a file of its own and adds itself to the command line with one
+// function.
+#pragma once
+
+#include "runtime/app/session.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace frustum::cli {
+
+enum Exit : int { done = 0, check_failed = 1, bad_input = 2, world_failed = 3, cancelled = 130 };
+
+// What is to be done once the command line has been read.
+struct Invocation {
+  std::function<int()> body;
+  bool json = false;
+};
+
+void add_run(CLI::App&, Invocation&);
+void add_check(CLI::App&, Invocation&);
+void add_plan(CLI::App&, Invocation&);
+void add_inspect(CLI::App&, Invocation&);
+void add_nodes(CLI::App&, Invocation&);
+void add_diff(CLI::App&, Invocation&);
+void add_test(CLI::App&, Invocation&);
+void add_new(CLI::App&, Invocation&);
+void add_catalog(CLI::App&, Invocation&);
+
+// A command with --json and an example under its help; `body` runs when the command was chosen. Options
+// live as long as the callbacks that hold them.
+CLI::App& add_command(CLI::App& app, Invocation& chosen, const std::string& name, const std::string& what,
+                      const std::string& example, std::function<int()> body);
+
+// A check of an option's value that adds nothing to the help, which has the option's own type name.
+CLI::Validator quiet(CLI::Validator check);
+
+// Wrong use of the command line: exit 2 with one line of help.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// ----- a graph and the values set in it
+struct GraphArguments {
+  std::string path;
+  std::vector<std::string> settings;
+  std::string precision;
+};
+void add_graph_arguments(CLI::App&, GraphArguments&);
+LoadOptions load_options(const GraphArguments&);  // throws UsageError for a --set without '='
+
+// The graph, or its problems printed and no graph. Warnings are printed and the graph returned.
+std::optional<Graph> load_or_report(const Session&, const GraphArguments&, bool json, LoadOptions);
+
+// ----- how a run goes
+struct RunArguments {
+  int threads = 0;
+  std::string memory, simd;
+  int tile = 0;
+  bool no_fuse = false;
+  std::string region;
+};
+void add_run_arguments(CLI::App&, RunArguments&);
+// Throws UsageError. A --simd that the processor lacks is WorldError("unsupported_simd").
+void apply(const RunArguments&, RunOptions&);
+
+// "3,4" as two integers and the like; throws UsageError naming the option.
+std::vector<int> integers(std::string_view option, std::string_view text, std::size_t count);
+// "1-48" or "7"; throws UsageError.
+std::pair<int, int> frame_range(std::string_view text);
+
+// ----- what is said
+void print(const std::string& text);  // stdout
+void print(const Json& object);       // stdout, one object
+void report(const Diagnostics&);      // as text on stderr
+// {"diagnostics": [...]} merged into `object`.
+Json with_diagnostics(Json object, const Diagnostics&);
+// Prints the problems, as JSON on stdout or as text on stderr, and gives `exit`.
+int fail(const Diagnostics&, bool json, Exit exit = bad_input);
+int exit_code(const RunResult&);
+
+// ----- the terminal
+bool color_on_stderr();
+bool progress_on_stderr();
+
+// Set by SIGINT and SIGTERM; a second signal ends the process at once.
+CancelFlag& cancel_flag();
+void catch_signals();
+
+}  // namespace frustum::cli

@@ -1,0 +1,241 @@
+// frustum inspect GRAPH NODE.PORT: the buffer between two nodes, its statistics, values, and where a pixel
+// came from.
+#include "runtime/app/export.h"
+#include "runtime/app/provenance.h"
+#include "runtime/app/text.h"
+#include "runtime/cli/command.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace frustum::cli {
+namespace {
+
+struct Arguments {
+  GraphArguments graph;
+  RunArguments run;
+  std::string port, pixel, provenance, save;
+  bool table = false;
+  std::size_t first = 0, rows = 20;
+  int sample = 0;
+};
+
+bool is_scalar_list(const Json& j) {
+  return j.is_array() && std::none_of(j.begin(), j.end(), [](const Json& e) { return e.is_structured(); });
+}
+
+std::string scalar(const Json& j) {
+  if (j.is_string()) return j.get<std::string>();
+  if (j.is_number_float()) return fmt::format("{:.9g}", j.get<double>());
+  if (!is_scalar_list(j)) return j.dump();
+  std::vector<std::string> items;
+  for (const Json& e : j) items.push_back(scalar(e));
+  return fmt::format("{}", fmt::join(items, " "));
+}
+
+// Counts as one bar each; a bucket that holds anything shows.
+std::string sparkline(const Json& counts) {
+  double most = 0;
+  for (const Json& n : counts) most = std::max(most, n.get<double>());
+  constexpr std::array<std::string_view, 8> bars{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+  std::string out;
+  for (const Json& n : counts) {
+    const double share = most > 0 ? n.get<double>() / most : 0;
+    out += share == 0 ? " " : bars[static_cast<std::size_t>(std::min(7.0, share * 8))];
+  }
+  return out;
+}
+
+// The cells of one object by column: nested percentiles become p5, p50 ...
+std::vector<std::pair<std::string, std::string>> cells(const Json& item) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const auto& [key, value] : item.items()) {
+    if (key == "percentiles")
+      for (const auto& [percent, at] : value.items()) out.emplace_back("p" + percent, scalar(at));
+    else
+      out.emplace_back(key, key == "histogram" ? sparkline(value) : scalar(value));
+  }
+  return out;
+}
+
+// Objects as one row each; columns in order of first appearance.
+std::string object_table(const Json& list, int indent) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const Json& item : list) {
+    std::vector<std::string> row(rows.front().size());
+    for (auto& [column, text] : cells(item)) {
+      const auto found = std::find(rows.front().begin(), rows.front().end(), column);
+      const auto at = static_cast<std::size_t>(found - rows.front().begin());
+      if (found == rows.front().end()) rows.front().push_back(column), row.emplace_back();
+      row[at] = std::move(text);
+    }
+    rows.push_back(std::move(row));
+  }
+  return aligned(rows, indent);
+}
+
+std::string lines(const Json& object, int indent = 0) {
+  std::string out;
+  const std::string margin(static_cast<std::size_t>(indent), ' ');
+  for (const auto& [key, value] : object.items()) {
+    if (value.is_object())
+      out += margin + key + "\n" + lines(value, indent + 2);
+    else if (value.is_array() && !value.empty() && !is_scalar_list(value) && value.front().is_object())
+      out += margin + key + "\n" + object_table(value, indent + 2);
+    else
+      out += fmt::format("{}{}: {}\n", margin, key, scalar(value));
+  }
+  return out;
+}
+
+Json number(double v) {  // JSON has no infinities and no NaN
+  if (std::isfinite(v)) return v;
+  return fmt::format("{}", v);
+}
+
+// {"samples": [{"sample": 0, "R": ..., "G": ...}]} with every plane.
+Json pixel_json(const Raster& raster, int x, int y) {
+  Json samples = Json::array();
+  for (int s = 0; s < raster.frame().samples(); ++s) {
+    Json row = {{"sample", s}};
+    for (std::size_t p = 0; p < raster.frame().planes.size(); ++p)
+      row[raster.frame().planes[p].name] = number(raster.value(static_cast<int>(p), s, x, y));
+    samples.push_back(std::move(row));
+  }
+  return {{"x", x}, {"y", y}, {"samples", samples}};
+}
+
+Json table_json(const Buffer& buffer, std::size_t first, std::size_t count) {
+  const Json table =
+      buffer.type().table != nullptr ? buffer.type().table(buffer.data(), first, count) : Json(nullptr);
+  if (table.is_null()) throw NodeError("no_table", fmt::format("a {} has no table form", buffer.type().name));
+  return table;
+}
+
+std::string table_text(const Json& table, std::size_t first) {
+  std::vector<std::vector<std::string>> rows{{"row"}};
+  for (const Json& c : table["columns"]) rows.front().push_back(scalar(c));
+  for (const Json& r : table["rows"]) {
+    rows.push_back({std::to_string(first + rows.size() - 1)});
+    for (const Json& v : r) rows.back().push_back(scalar(v));
+  }
+  return aligned(rows) + fmt::format("{} rows in all\n", table["total"].get<std::size_t>());
+}
+
+Json header_json(const std::string& name, const Buffer& buffer) {
+  const Health health = buffer.health();
+  Json out = {{"port", name},
+              {"type", buffer.type().name},
+              {"bytes", buffer.bytes()},
+              {"digest", to_hex(buffer.digest())},
+              {"values", health.values},
+              {"nan", health.nan},
+              {"positive_infinity", health.positive_infinity},
+              {"negative_infinity", health.negative_infinity}};
+  if (!health.finite()) out["first_not_finite"] = health.first;
+  return out;
+}
+
+int show_provenance(Session& session, const Graph& graph, PortRef port, const Arguments& args,
+                    RunOptions options, bool json) {
+  const auto at = integers("--provenance", args.provenance, 2);
+  Diagnostics problems;
+  RunResult::End end{};
+  const auto found = provenance(session, graph, port, at[0], at[1], std::move(options), problems, end);
+  if (!found) {
+    RunResult failed;
+    failed.end = end == RunResult::End::done ? RunResult::End::failed : end;
+    return fail(problems, json, static_cast<Exit>(exit_code(failed)));
+  }
+  if (json)
+    print(to_json(*found));
+  else
+    print(to_text(*found));
+  return done;
+}
+
+int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Arguments& args, bool json) {
+  Json out = header_json(graph.name(port), buffer);
+  std::string text;
+  if (!args.pixel.empty()) {
+    const auto at = integers("--pixel", args.pixel, 2);
+    const Raster* raster = buffer.type().is_pixels() ? &buffer.type().raster(buffer.data()) : nullptr;
+    if (raster == nullptr) throw NodeError("not_pixels", fmt::format("{} holds no pixels", graph.name(port)));
+    if (!raster->frame().window.contains(at[0], at[1]))
+      throw NodeError("outside_window", fmt::format("pixel {},{} lies outside the picture", at[0], at[1]));
+    out["pixel"] = pixel_json(*raster, at[0], at[1]);
+    text += object_table(out["pixel"]["samples"], 0);
+  }
+  if (args.table) {
+    out["table"] = table_json(buffer, args.first, args.rows);
+    text += table_text(out["table"], args.first);
+  }
+  if (text.empty()) {
+    out["summary"] = buffer.type().summary(buffer.data());
+    text = lines(out);
+  }
+  if (!args.save.empty()) {
+    save_buffer(buffer, args.save, args.sample);
+    out["saved"] = args.save;
+    text += args.save + "\n";
+  }
+  if (json)
+    print(out);
+  else
+    print(text);
+  return done;
+}
+
+int inspect(const Arguments& args, bool json) {
+  Session session;
+  const auto graph = load_or_report(session, args.graph, json, load_options(args.graph));
+  if (!graph) return bad_input;
+  Diagnostics problems;
+  const auto port = port_of(*graph, args.port, problems);
+  if (!port) return fail(problems, json);
+  RunOptions options;
+  apply(args.run, options);
+  options.cancel = &cancel_flag();
+  if (!args.provenance.empty()) return show_provenance(session, *graph, *port, args, options, json);
+  options.demand.ports = {*port};
+  const RunResult result = session.run(*graph, options);
+  if (result.end != RunResult::End::done)
+    return fail(result.problems, json, static_cast<Exit>(exit_code(result)));
+  report(result.problems);
+  return show_buffer(*graph, *port, result.buffers.at(*port), args, json);
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& app, Invocation& chosen) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App& c =
+      add_command(app, chosen, "inspect", "Shows any buffer: statistics, values, where a pixel came from.",
+                  "frustum inspect graphs/gallery/teapot_stages.json display --provenance 640,360",
+                  [args, &chosen] { return inspect(*args, chosen.json); });
+  add_graph_arguments(c, args->graph);
+  c.add_option("port", args->port, "A port, a node (its first output) or an output of the graph.")
+      ->required()
+      ->type_name("NODE.PORT");
+  c.add_option("--pixel", args->pixel, "Every plane of every sample of one pixel.")->type_name("X,Y");
+  c.add_option("--provenance", args->provenance,
+               "The pixel's samples, their triangles, and the node that made them.")
+      ->type_name("X,Y");
+  c.add_flag("--table", args->table, "The values as rows.");
+  c.add_option("--first", args->first, "The first row of the table.")->type_name("ROW");
+  c.add_option("--rows", args->rows, "Rows of the table.")->capture_default_str()->type_name("N");
+  c.add_option("--save", args->save,
+               "Pixels to an image file (.exr keeps every plane), anything else to a .csv.")
+      ->type_name("FILE");
+  c.add_option("--sample", args->sample, "Which sample of each pixel --save writes.")
+      ->capture_default_str()
+      ->type_name("N");
+  add_run_arguments(c, args->run);
+}
+
+}  // namespace frustum::cli

@@ -1,0 +1,66 @@
+// frustum new FAMILY.NODE: the files of a new node type.
+#include "runtime/app/files.h"
+#include "runtime/app/scaffold.h"
+#include "runtime/cli/command.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace frustum::cli {
+namespace {
+
+struct Arguments {
+  std::string name, root;
+  bool pixels = false;
+};
+
+std::filesystem::path tree(const Arguments& args) {
+  if (!args.root.empty()) return args.root;
+  if (const auto here = source_root(".")) return *here;
+  throw UsageError("new: no source tree around the current folder; name it with --root");
+}
+
+int make(const Arguments& args, bool json) {
+  if (const std::string problem = problem_of_node_name(args.name); !problem.empty())
+    throw UsageError(fmt::format("new {}: {}", args.name, problem));
+  const std::filesystem::path root = tree(args);
+  const auto files = scaffold(args.name, args.pixels ? NewNode::pixels : NewNode::geometry);
+  Diagnostics problems;
+  for (const ScaffoldFile& f : files)
+    if (std::filesystem::exists(root / f.path))
+      problems.add({.code = "exists", .pointer = "", .message = fmt::format("{} is already there", f.path)});
+  if (problems.has_errors()) return fail(problems, json);
+  Json written = Json::array();
+  std::string text;
+  for (const ScaffoldFile& f : files) {
+    write_text(root / f.path, f.text);
+    written.push_back(f.path);
+    text += fmt::format("wrote {}\n", f.path);
+  }
+  if (json)
+    print(Json{{"written", written}});
+  else
+    print(text + fmt::format("\nIt builds and runs as it is. Now make it do what you want:\n"
+                             "  {0}   the algorithm\n  {1}   its ports and parameters\n\n"
+                             "  ./dev run {3}   builds and runs the example\n"
+                             "  ./dev test -R {2}   runs its tests\n"
+                             "  ./dev docs   writes its schema and its page\n",
+                             files[0].path, files[1].path, args.name.substr(args.name.find('.') + 1),
+                             files[3].path));
+  return done;
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, Invocation& chosen) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App& c =
+      add_command(app, chosen, "new", "Writes the files of a new node type, ready to build.",
+                  "frustum new curve.supercircle", [args, &chosen] { return make(*args, chosen.json); });
+  c.add_option("name", args->name, "FAMILY.NODE in snake_case.")->required()->type_name("FAMILY.NODE");
+  c.add_flag("--pixels", args->pixels, "A node that fills rectangles of pixels, not one of whole buffers.");
+  c.add_option("--root", args->root, "The source tree; by default the one around the current folder.")
+      ->type_name("DIR");
+}
+
+}  // namespace frustum::cli

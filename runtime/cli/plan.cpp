@@ -1,0 +1,125 @@
+// frustum plan GRAPH: what would run and why, what not, what streams and what is held whole.
+#include "runtime/app/text.h"
+#include "runtime/cli/command.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace frustum::cli {
+namespace {
+
+struct Arguments {
+  GraphArguments graph;
+  std::vector<std::string> wanted;
+  bool no_fuse = false;
+};
+
+std::vector<std::string> ids(const Graph& graph, const std::vector<std::size_t>& nodes) {
+  std::vector<std::string> out;
+  for (const std::size_t n : nodes) out.push_back(graph.nodes[n].id);
+  return out;
+}
+
+std::vector<std::string> output_names(const Graph& graph, const std::vector<std::size_t>& outputs) {
+  std::vector<std::string> out;
+  for (const std::size_t o : outputs) out.push_back(graph.outputs[o].name);
+  return out;
+}
+
+std::vector<std::string> foreign(const Graph& graph, const Plan& plan) {
+  std::vector<std::string> out;
+  for (const PlannedNode& n : plan.nodes)
+    if (graph.nodes[n.node].type->foreign) out.push_back(graph.nodes[n.node].id);
+  return out;
+}
+
+Json plan_json(const Graph& graph, const Plan& plan) {
+  Json nodes = Json::array(), passes = Json::array(), steps = Json::array();
+  for (const PlannedNode& n : plan.nodes) {
+    const GraphNode& node = graph.nodes[n.node];
+    Json outputs = Json::array();
+    for (std::size_t p = 0; p < node.type->outputs.size(); ++p)
+      if (p >= 64 || ((n.wanted_outputs >> p) & 1) != 0) outputs.push_back(node.type->outputs[p].name);
+    nodes.push_back({{"id", node.id},
+                     {"type", node.type->name},
+                     {"kind", node.type->is_pixel() ? "pixels" : "geometry"},
+                     {"outputs", outputs},
+                     {"wanted_by", n.wanted_by}});
+  }
+  for (const PixelPass& pass : plan.passes) {
+    Json whole = Json::array();
+    for (const auto& root : pass.roots)
+      whole.push_back({{"port", graph.name(root.port)}, {"why", name_of(root.why)}});
+    passes.push_back({{"nodes", ids(graph, pass.nodes)},
+                      {"whole", whole},
+                      {"outputs", output_names(graph, pass.outputs)}});
+  }
+  for (const Step& s : plan.steps) {
+    Json step = Json::object();
+    if (s.kind == Step::Kind::node)
+      step["node"] = graph.nodes[s.index].id;
+    else
+      step["pass"] = s.index;
+    step["followers"] = s.followers;
+    steps.push_back(std::move(step));
+  }
+  return {{"nodes", nodes},
+          {"skipped", ids(graph, plan.skipped)},
+          {"passes", passes},
+          {"steps", steps},
+          {"foreign", foreign(graph, plan)}};
+}
+
+std::string plan_text(const Graph& graph, const Plan& plan) {
+  std::vector<std::vector<std::string>> rows;
+  for (const PlannedNode& n : plan.nodes) {
+    const GraphNode& node = graph.nodes[n.node];
+    rows.push_back({node.id, node.type->name, fmt::format("for {}", fmt::join(n.wanted_by, ", "))});
+  }
+  std::string out = fmt::format("{} nodes run:\n{}", plan.nodes.size(), aligned(rows, 2));
+  for (const PixelPass& pass : plan.passes) {
+    out += fmt::format("one pass over tiles: {}\n", fmt::join(ids(graph, pass.nodes), " > "));
+    for (const auto& root : pass.roots)
+      out += fmt::format("  {} is held whole: {}\n", graph.name(root.port), name_of(root.why));
+    for (const std::string& o : output_names(graph, pass.outputs))
+      out += fmt::format("  streams to output '{}'\n", o);
+  }
+  if (!plan.skipped.empty())
+    out +=
+        fmt::format("not run, since nobody asks for them: {}\n", fmt::join(ids(graph, plan.skipped), ", "));
+  if (const auto f = foreign(graph, plan); !f.empty())
+    out += fmt::format("computed by a library, same bytes on one processor only: {}\n", fmt::join(f, ", "));
+  return out;
+}
+
+int plan(const Arguments& args, bool json) {
+  const Session session;
+  const auto graph = load_or_report(session, args.graph, json, load_options(args.graph));
+  if (!graph) return bad_input;
+  Diagnostics problems;
+  const Demand demand = demand_of(*graph, args.wanted, problems);
+  if (problems.has_errors()) return fail(problems, json);
+  const Plan made = make_plan(*graph, demand, {.fuse = !args.no_fuse});
+  if (json)
+    print(plan_json(*graph, made));
+  else
+    print(plan_text(*graph, made));
+  return done;
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, Invocation& chosen) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App& c = add_command(app, chosen, "plan", "Says what would run, what not, and why.",
+                            "frustum plan graphs/gallery/teapot_stages.json --want hits.depth",
+                            [args, &chosen] { return plan(*args, chosen.json); });
+  add_graph_arguments(c, args->graph);
+  c.add_option("--want", args->wanted, "Only this output or port; repeatable.")
+      ->type_name("NODE.PORT|OUTPUT")
+      ->allow_extra_args(false);
+  c.add_flag("--no-fuse", args->no_fuse, "Every pixel node's outputs become whole.");
+}
+
+}  // namespace frustum::cli

@@ -1,0 +1,225 @@
+// frustum run GRAPH: makes the wanted files and buffers.
+#include "runtime/app/files.h"
+#include "runtime/app/observers.h"
+#include "runtime/app/text.h"
+#include "runtime/cli/command.h"
+#include "runtime/cli/progress.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace frustum::cli {
+namespace {
+
+struct Arguments {
+  GraphArguments graph;
+  RunArguments run;
+  std::vector<std::string> wanted;
+  std::string out = "out", frames, trace;
+  int repeat = 0;
+  bool events = false;
+};
+
+// The most memory that this process ever held, as the system counts it.
+std::uint64_t peak_process_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+struct Listeners {
+  Observers all;
+  std::optional<ProgressBar> bar;
+  std::optional<EventStream> events;
+  std::optional<Trace> trace;
+  std::optional<StepTimes> steps;
+};
+
+void write_event(const std::string& line) { std::fputs((line + "\n").c_str(), stderr); }
+
+void attach(Listeners& l, const Arguments& args) {
+  if (progress_on_stderr() && !args.events && args.repeat == 0) l.all.add(l.bar.emplace());
+  if (args.events) l.all.add(l.events.emplace(fmt::format("{}", ::getpid()), write_event));
+  if (!args.trace.empty()) l.all.add(l.trace.emplace());
+  if (args.repeat != 0) l.all.add(l.steps.emplace());
+}
+
+Json ports_json(const Graph& graph, const RunResult& result) {
+  Json ports = Json::object();
+  for (const auto& [port, buffer] : result.buffers)
+    ports[graph.name(port)] = {
+        {"type", buffer.type().name}, {"bytes", buffer.bytes()}, {"digest", to_hex(buffer.digest())}};
+  return ports;
+}
+
+Json culprit_json(const Culprit& c) {
+  return {{"node", c.node},
+          {"port", c.port},
+          {"where", c.where},
+          {"inputs", c.inputs},
+          {"values", c.health.values},
+          {"nan", c.health.nan},
+          {"positive_infinity", c.health.positive_infinity},
+          {"negative_infinity", c.health.negative_infinity}};
+}
+
+struct Outcome {
+  int code = done;
+  std::vector<std::string> files;
+  Json ports = Json::object();
+  Diagnostics problems;
+  std::optional<Culprit> culprit;
+  std::uint64_t peak_bytes = 0;
+  std::vector<std::chrono::nanoseconds> times;  // of whole runs
+};
+
+// One run of one frame; the outcome gathers over frames and repetitions.
+void run_once(Session& session, const Graph& graph, const RunOptions& options, bool keep, Outcome& o) {
+  const auto began = std::chrono::steady_clock::now();
+  RunResult r = session.run(graph, options, keep);
+  o.times.push_back(std::chrono::steady_clock::now() - began);
+  o.code = exit_code(r);
+  o.peak_bytes = std::max(o.peak_bytes, r.peak_bytes);
+  for (std::string& f : r.files)
+    if (std::find(o.files.begin(), o.files.end(), f) == o.files.end()) o.files.push_back(std::move(f));
+  o.ports = ports_json(graph, r);
+  if (!o.culprit) o.culprit = r.culprit;
+  if (o.times.size() == 1 || keep) o.problems.add(r.problems);
+}
+
+// Loads the graph for one frame and runs it. False where the rest is not worth trying.
+bool run_frame(Session& session, const Arguments& args, std::optional<int> frame, Listeners& listeners,
+               Outcome& o) {
+  LoadOptions load = load_options(args.graph);
+  load.frame = frame;
+  Loaded loaded = session.load(args.graph.path, std::move(load));
+  o.problems.add(loaded.problems);
+  if (!loaded.graph) return o.code = bad_input, false;
+  RunOptions options;
+  apply(args.run, options);
+  options.demand = demand_of(*loaded.graph, args.wanted, o.problems);
+  if (o.problems.has_errors()) return o.code = bad_input, false;
+  options.out_folder = args.out;
+  options.frame = frame;
+  options.cancel = &cancel_flag();
+  options.observer = &listeners.all;
+  for (int i = 0; i < std::max(1, args.repeat) && o.code == done; ++i)
+    run_once(session, *loaded.graph, options, args.repeat == 0, o);
+  return o.code == done;
+}
+
+void print_steps(const StepTimes& steps, const Outcome& o) {
+  std::vector<std::vector<std::string>> rows{{"step", "min", "median", "runs"}};
+  const auto row = [&](const std::string& what, const std::vector<std::chrono::nanoseconds>& times) {
+    rows.push_back({what, human_time(*std::min_element(times.begin(), times.end())),
+                    human_time(median(times)), std::to_string(times.size())});
+  };
+  for (const StepTimes::Row& r : steps.rows()) row(r.what, r.times);
+  row("whole run", o.times);
+  print(aligned(rows));
+}
+
+void print_text(const Outcome& o, const Listeners& l, std::chrono::nanoseconds total) {
+  report(o.problems);
+  if (o.culprit)
+    std::fputs(fmt::format("warning: {}.{} made the first NaN or infinity ({}){}\n", o.culprit->node,
+                           o.culprit->port, o.culprit->where,
+                           o.culprit->inputs.empty() ? "" : "; its inputs: " + o.culprit->inputs)
+                   .c_str(),
+               stderr);
+  if (o.code == cancelled) std::fputs("cancelled\n", stderr);
+  if (o.code != done) return;
+  for (const std::string& f : o.files) print(f + "\n");
+  for (const auto& [name, port] : o.ports.items())
+    print(fmt::format("{}  {}  {}  {}\n", name, port["type"].get<std::string>(),
+                      human_bytes(port["bytes"].get<std::uint64_t>()), port["digest"].get<std::string>()));
+  if (l.steps) print_steps(*l.steps, o);
+  std::fputs(fmt::format("{}, buffers {} at most, process {} at most\n", human_time(total),
+                         human_bytes(o.peak_bytes), human_bytes(peak_process_bytes()))
+                 .c_str(),
+             stderr);
+}
+
+void print_json(const Outcome& o, const Listeners& l, std::chrono::nanoseconds total) {
+  const auto ms = [](std::chrono::nanoseconds t) {
+    return std::chrono::duration<double, std::milli>(t).count();
+  };
+  constexpr auto end_of = [](int code) {
+    return code == done        ? "done"
+           : code == cancelled ? "cancelled"
+           : code == bad_input ? "failed"
+                               : "world_failed";
+  };
+  Json out = {{"end", end_of(o.code)},      {"files", o.files},
+              {"ports", o.ports},           {"ms", ms(total)},
+              {"peak_bytes", o.peak_bytes}, {"peak_process_bytes", peak_process_bytes()}};
+  if (o.culprit) out["culprit"] = culprit_json(*o.culprit);
+  if (l.steps) {
+    const auto times_json = [&](const std::string& what, const std::vector<std::chrono::nanoseconds>& times) {
+      return Json{{"step", what},
+                  {"min_ms", ms(*std::min_element(times.begin(), times.end()))},
+                  {"median_ms", ms(median(times))},
+                  {"runs", times.size()}};
+    };
+    Json steps = Json::array();
+    for (const StepTimes::Row& r : l.steps->rows()) steps.push_back(times_json(r.what, r.times));
+    if (!o.times.empty()) steps.push_back(times_json("whole run", o.times));
+    out["steps"] = std::move(steps);
+  }
+  print(with_diagnostics(std::move(out), o.problems));
+}
+
+int run(const Arguments& args, bool json) {
+  const auto began = std::chrono::steady_clock::now();
+  Session session;
+  Listeners listeners;
+  attach(listeners, args);
+  Outcome outcome;
+  if (args.frames.empty()) {
+    run_frame(session, args, std::nullopt, listeners, outcome);
+  } else {
+    const auto [first, last] = frame_range(args.frames);
+    for (int frame = first; frame <= last; ++frame)
+      if (!run_frame(session, args, frame, listeners, outcome)) break;
+  }
+  listeners.bar.reset();
+  const auto total = std::chrono::steady_clock::now() - began;
+  if (listeners.trace) write_text(args.trace, listeners.trace->text());
+  if (json)
+    print_json(outcome, listeners, total);
+  else
+    print_text(outcome, listeners, total);
+  return outcome.code;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Invocation& chosen) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App& c = add_command(app, chosen, "run", "Runs a graph and writes its outputs.",
+                            "frustum run graphs/gallery/teapot.json --set samples=4 --out pictures",
+                            [args, &chosen] { return run(*args, chosen.json); });
+  add_graph_arguments(c, args->graph);
+  c.add_option("--want", args->wanted, "Only this output or port; repeatable. Without it, every output.")
+      ->type_name("NODE.PORT|OUTPUT")
+      ->allow_extra_args(false);
+  c.add_option("--out", args->out, "The folder that files are written under.")
+      ->capture_default_str()
+      ->type_name("DIR");
+  c.add_option("--frames", args->frames, "Sets the graph parameter frame to each of these in turn.")
+      ->type_name("A-B");
+  add_run_arguments(c, args->run);
+  c.add_option("--trace", args->trace, "Writes a timeline in the Chrome trace format.")->type_name("FILE");
+  c.add_option("--repeat", args->repeat,
+               "Runs this often without the cache and prints the times of every step.")
+      ->check(quiet(CLI::Range(1, 1000000)))
+      ->type_name("N");
+  c.add_flag("--events", args->events, "Events as JSON lines on stderr.");
+}
+
+}  // namespace frustum::cli

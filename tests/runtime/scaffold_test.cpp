@@ -1,0 +1,100 @@
+#include "runtime/app/scaffold.h"
+
+#include "runtime/core/diagnostic.h"
+#include "tests/support/process.h"
+#include "tests/support/temp_file.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <sstream>
+
+namespace frustum {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(NewNode, NamesAreFamilyDotNodeInSnakeCase) {
+  for (const char* good : {"curve.supercircle", "io.load_mesh2"})
+    EXPECT_EQ(problem_of_node_name(good), "") << good;
+  for (const char* bad : {"", "curve", "Curve.arc", "curve.Arc", "curve.arc.x", "curve.", ".arc",
+                          "curve.1arc", "cur-ve.arc", "../x.y", "kernels.sum"})
+    EXPECT_NE(problem_of_node_name(bad), "") << bad;
+}
+
+// How this build compiles a file of nodes/, without the output: from compile_commands.json.
+std::vector<std::string> compile_command() {
+  const fs::path build = fs::path(test::frustum_program()).parent_path().parent_path();
+  std::ifstream in(build / "compile_commands.json");
+  for (const Json& entry : Json::parse(in)) {
+    if (!entry["file"].get<std::string>().ends_with("nodes/io/load_patches.cpp")) continue;
+    std::vector<std::string> command;
+    std::istringstream words(entry["command"].get<std::string>());
+    for (std::string w; words >> w;) {
+      if (w == "-o" || w == "-c") {
+        words >> w;
+        continue;
+      }
+      if (!w.ends_with("ccache")) command.push_back(w);
+    }
+    return command;
+  }
+  return {};
+}
+
+class Scaffold : public testing::TestWithParam<NewNode> {};
+
+// Building, testing and running a scaffold whole takes a build of its own; what rots first is that it compiles.
+TEST_P(Scaffold, CompilesWithoutAWarning) {
+  auto command = compile_command();
+  ASSERT_FALSE(command.empty());
+  const test::TempFolder folder;
+  const auto files = scaffold("curve.new_node", GetParam());
+  ASSERT_EQ(files.size(), 4u);
+  for (const ScaffoldFile& f : files) {
+    fs::create_directories(fs::path(folder.file(f.path)).parent_path());
+    folder.write(f.path, f.text);
+    EXPECT_THAT(f.text, testing::Not(HasSubstr("@")));
+  }
+  // The declaration that CMake generates for every node.
+  folder.write(
+      "declared.h",
+      "#include \"runtime/core/node_type.h\"\nnamespace frustum::nodes { NodeType curve_new_node(); }\n");
+  for (const char* option : {"-fsyntax-only", "-Werror", "-I"}) command.emplace_back(option);
+  command.push_back(folder.path());
+  command.insert(command.end(), {"-include", folder.file("declared.h")});
+  for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
+    auto one = command;
+    one.push_back(folder.file(files[i].path));
+    const auto r = test::run_process(one, FRUSTUM_SOURCE_DIR);
+    EXPECT_EQ(r.code, 0) << r.err;
+    EXPECT_THAT(r.err, IsEmpty());
+  }
+}
+
+TEST_P(Scaffold, ItsGraphIsOneOfTheFormat) {
+  const auto graph = Json::parse(scaffold("curve.new_node", GetParam()).at(3).text);
+  EXPECT_EQ(graph["format"], "frustum.graph/1");
+  EXPECT_THAT(graph.dump(), HasSubstr("\"type\":\"curve.new_node\""));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Scaffold, testing::Values(NewNode::geometry, NewNode::pixels),
+                         [](const auto& info) {
+                           return info.param == NewNode::geometry ? "geometry" : "pixels";
+                         });
+
+TEST(NewNode, NothingIsOverwritten) {
+  const test::TempFolder folder;
+  fs::create_directories(folder.file("nodes/curve"));
+  folder.write("nodes/curve/arc.cpp", "mine");
+  const auto r = test::frustum({"new", "curve.arc", "--root", folder.path()});
+  EXPECT_EQ(r.code, 2);
+  EXPECT_THAT(r.err, HasSubstr("nodes/curve/arc.cpp is already there"));
+  EXPECT_FALSE(fs::exists(folder.file("nodes/curve/arc.h")));
+}
+
+}  // namespace
+}  // namespace frustum
