@@ -116,7 +116,9 @@ HWY_INLINE void draw_fixed(D d, const Drawing& t, const PixelRect& box) {
       const auto side = [&](const LaneEdge& e, auto step) {
         return hn::Add(hn::Set(di, e.a * i + e.b * j + e.c), step);
       };
-      auto covered = hn::FirstN(d, static_cast<std::size_t>(lanes));
+      // Without edges to test, only the lanes inside the box are known to be covered.
+      auto covered = hn::RebindMask(
+          d, hn::And(hn::Gt(iota, hn::Set(di, box.x0 - at - 1)), hn::Lt(iota, hn::Set(di, box.x1 - at))));
       if constexpr (test_edges) {
         const auto outside = hn::Or(hn::Or(side(t.edge[0], a0), side(t.edge[1], a1)), side(t.edge[2], a2));
         covered = hn::RebindMask(d, hn::Gt(outside, hn::Set(di, -1)));
