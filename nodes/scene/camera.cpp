@@ -60,7 +60,7 @@ NodeType nodes::scene_camera() {
       .param("resolution", &Params::resolution,
              "Width and height of the picture; their ratio is that of the view.",
              {.unit = "px", .range = between(1, 65536)})
-      .output("camera", &Outputs::camera, "The camera.");
+      .output("camera", &Outputs::camera, "The camera, for the nodes that project, tessellate and shade.");
 }
 
 }  // namespace frustum

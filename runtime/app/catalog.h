@@ -14,6 +14,8 @@ namespace frustum {
 std::string type_names(const Port& port);
 // ", in clip space", ", in world or eye space"; empty where space does not matter.
 std::string space_names(const Port& port);
+// What a parameter's JSON looks like: "a number", "3 numbers", "list of objects", "flat, gouraud or phong".
+std::string value_text(const ParamType& type);
 // "at least 1 px", "0 to 180 degrees", "px"; empty for a pure number without bounds.
 std::string range_text(const ParamOptions& options);
 // "graphs/nodes/clip/homogeneous.json".

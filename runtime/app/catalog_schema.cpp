@@ -205,6 +205,7 @@ Json suite_schema() {
               {"use", list({{"type", "string"}})},
               {"set", values},
               {"matrix", matrix},
+              {"precision", precision_schema()},
               {"checks", list(check_schema())},
               {"expect", one_of({expect, list(expect)})},
               {"tags", list({{"type", "string"}})}},

@@ -39,7 +39,7 @@ std::string field_rows(const ParamType& record, const void* defaults, const std:
   for (const ParamField& f : record.fields) {
     const void* member = defaults != nullptr ? static_cast<const char*>(defaults) + f.offset : nullptr;
     const std::string value = member != nullptr ? fmt::format("`{}`", f.type->write(member).dump()) : "";
-    out += fmt::format("| `{}{}` | {} | {} | {} | {} |\n", prefix, f.name, in_table(f.type->name),
+    out += fmt::format("| `{}{}` | {} | {} | {} | {} |\n", prefix, f.name, in_table(value_text(*f.type)),
                        in_table(value), range_text(f.options), in_table(f.doc));
     const ParamType* inner = f.type;
     while (inner->element != nullptr) inner = inner->element;
@@ -69,6 +69,32 @@ std::string space_names(const Port& port) {
   for (const auto& [space, name] : choices(Space{}))
     if (port.spaces.has(space)) names.push_back(name);
   return names.empty() ? "" : fmt::format(", in {} space", fmt::join(names, " or "));
+}
+
+std::string value_text(const ParamType& type) {
+  using Kind = ParamType::Kind;
+  const auto plural = [](const ParamType& t) -> std::string {
+    switch (t.kind) {
+      case Kind::real: return "numbers";
+      case Kind::integer: return "integers";
+      case Kind::text: return "texts";
+      case Kind::record: return "objects";
+      default: return fmt::format("of: {}", value_text(t));
+    }
+  };
+  switch (type.kind) {
+    case Kind::array:
+      return type.count != 0 ? fmt::format("{} {}", type.count, plural(*type.element))
+                             : fmt::format("list of {}", plural(*type.element));
+    case Kind::optional: return value_text(*type.element) + ", or null";
+    case Kind::choice: {
+      std::string out;
+      for (std::size_t i = 0; i < type.choices.size(); ++i)
+        out += (i == 0 ? "" : i + 1 < type.choices.size() ? ", " : " or ") + type.choices[i];
+      return out;
+    }
+    default: return type.name;
+  }
 }
 
 std::string range_text(const ParamOptions& options) {

@@ -104,7 +104,8 @@ struct Finder {
     return std::nullopt;
   }
 
-  // The meshes from the rasterized one up to the one that no other mesh fed.
+  // The ports that may hold meshes, from the rasterized one upwards: an output that follows its input may hold another
+  // kind, which ends the chain once it is known.
   std::vector<PortRef> mesh_chain(PortRef rasterized) const {
     std::vector<PortRef> chain{rasterized};
     for (auto above = feeding(graph, rasterized.node, is_mesh); !above.empty();
@@ -144,10 +145,12 @@ struct Finder {
       return fail("outside_window", fmt::format("pixel {},{} lies outside the picture", x, y));
     const auto rasterized = feeding(graph, ids->node, is_mesh);
     if (rasterized.empty()) return fail("no_mesh", "no mesh feeds " + graph.nodes[ids->node].id);
-    const auto chain = mesh_chain(rasterized.front());
+    auto chain = mesh_chain(rasterized.front());
     options.region.reset();
     const auto meshes = run(chain);
     if (!meshes) return std::nullopt;
+    const auto is_other = [&](PortRef p) { return !meshes->at(p).is<Mesh>(); };
+    chain.erase(std::find_if(chain.begin(), chain.end(), is_other), chain.end());
 
     Provenance out;
     out.ids = graph.name(*ids);

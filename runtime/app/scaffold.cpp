@@ -53,10 +53,11 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
   return ctx.real([&]<class R>() -> Outputs {
     using V = glm::vec<3, R>;
     const Ref<Column> position = in.mesh->real<R>("position");
-    auto moved = Column::make<V>("position", Domain::vertex, position->rows(), position->space());
+    const std::shared_ptr<Column> moved =
+        Column::make<V>("position", Domain::vertex, position->rows(), position->space());
     const auto distance = static_cast<R>(p.distance);
     @family@::@node@<R>(position->values<V>(), V(p.direction), distance, moved->values<V>());
-    return {std::make_shared<const Mesh>(in.mesh->with(std::move(moved)))};
+    return {std::make_shared<const Mesh>(in.mesh->with(moved))};
   });
 }
 
@@ -79,7 +80,7 @@ constexpr std::string_view geometry_test = R"(#include "nodes/@family@/@node@.h"
 
 #include "nodes/all_nodes.h"
 #include "runtime/buffers/mesh.h"
-#include "tests/support/run_node.h"
+@include@ "tests/support/run_node.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -228,7 +229,7 @@ constexpr std::string_view pixel_test = R"(#include "nodes/@family@/@node@.h"
 
 #include "nodes/all_nodes.h"
 #include "runtime/buffers/image.h"
-#include "tests/support/run_node.h"
+@include@ "tests/support/run_node.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -321,6 +322,7 @@ std::vector<ScaffoldFile> scaffold(std::string_view name, NewNode kind) {
   const auto dot = name.find('.');
   const std::string family(name.substr(0, dot)), node(name.substr(dot + 1));
   const std::vector<std::pair<std::string, std::string>> values{{"@name@", std::string(name)},
+                                                                {"@include@", "#include"},
                                                                 {"@family@", family},
                                                                 {"@node@", node},
                                                                 {"@Node@", pascal(family) + pascal(node)}};

@@ -67,12 +67,14 @@ void describe(Fields<ExpectKeys>& f) {
 struct CaseKeys {
   std::string id, graph;
   std::vector<std::string> use, tags;
+  std::optional<Precision> precision;
 };
 void describe(Fields<CaseKeys>& f) {
   f.field("id", &CaseKeys::id, "Unique name.")
       .field("graph", &CaseKeys::graph, "A graph file, or a pattern of them.")
       .field("use", &CaseKeys::use, "Presets.")
-      .field("tags", &CaseKeys::tags, "For --filter.");
+      .field("tags", &CaseKeys::tags, "For --filter.")
+      .field("precision", &CaseKeys::precision, "The Real of the nodes, above the graph's own.");
 }
 
 // Values by address, and lists of values by address.
@@ -209,7 +211,8 @@ class Reader {
 
   void read_case(const Json& j, Suite& suite) {
     const auto keys = read_keys<CaseKeys>(j, {"set", "matrix", "checks", "expect"});
-    SuiteCase c{.id = keys.id, .graph = {}, .settings = {}, .checks = {}, .expected = {}, .tags = keys.tags};
+    SuiteCase c;
+    c.id = keys.id, c.tags = keys.tags, c.precision = keys.precision;
     if (keys.id.empty() || keys.graph.empty())
       at_.problem("missing_key", "a case needs an \"id\" and a \"graph\"");
     if (!keys.id.empty() && !ids_.insert(keys.id).second)

@@ -44,6 +44,7 @@ struct SuiteCase {
   std::string id;     // "teapot[samples=4]", "examples/clip/homogeneous"
   std::string graph;  // the path of the graph file
   std::vector<Setting> settings;
+  std::optional<Precision> precision;  // above the graph's own
   std::vector<SuiteCheck> checks;
   std::vector<ExpectedProblem> expected;
   std::vector<std::string> tags;

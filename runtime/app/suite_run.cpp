@@ -35,6 +35,7 @@ class CaseRun {
   void run() {
     LoadOptions load;
     load.settings = case_.settings;
+    load.precision = case_.precision;
     Loaded loaded = session_.load(case_.graph, std::move(load));
     if (loaded.graph) run_graph_of(*loaded.graph, loaded.problems);
     judge_problems(loaded.problems);

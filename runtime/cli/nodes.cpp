@@ -39,6 +39,23 @@ std::string ports_text(const std::string& title, const std::vector<Port>& ports,
   return out;
 }
 
+// Fields of objects inside stand after them, by their path.
+std::string fields_text(const ParamType& record, const void* defaults, const std::string& path) {
+  std::string out;
+  for (const ParamField& f : record.fields) {
+    std::string head = fmt::format("{}{}  {}", path, f.name, value_text(*f.type));
+    if (defaults != nullptr)
+      head +=
+          fmt::format(", default {}", f.type->write(static_cast<const char*>(defaults) + f.offset).dump());
+    if (const std::string range = range_text(f.options); !range.empty()) head += fmt::format(" ({})", range);
+    out += described(head, f.doc);
+    const ParamType* inner = f.type;
+    while (inner->element != nullptr) inner = inner->element;
+    if (inner->kind == ParamType::Kind::record) out += fields_text(*inner, nullptr, path + f.name + ".");
+  }
+  return out;
+}
+
 std::string node_text(const NodeType& type) {
   std::string out =
       fmt::format("{}  ({})\n  {}\n", type.name, type.is_pixel() ? "pixel node" : "geometry node",
@@ -46,13 +63,7 @@ std::string node_text(const NodeType& type) {
   if (type.foreign) out += "  A library computes its numbers: same bytes on one processor only.\n";
   out += ports_text("inputs", type.inputs, true) + ports_text("outputs", type.outputs, false);
   const auto defaults = type.default_params();
-  if (!type.params.fields.empty()) out += "\nparameters\n";
-  for (const ParamField& f : type.params.fields) {
-    const Json value = f.type->write(static_cast<const char*>(defaults.get()) + f.offset);
-    std::string head = fmt::format("{}  {}, default {}", f.name, f.type->name, value.dump());
-    if (const std::string range = range_text(f.options); !range.empty()) head += fmt::format(" ({})", range);
-    out += described(head, f.doc);
-  }
+  if (!type.params.fields.empty()) out += "\nparameters\n" + fields_text(type.params, defaults.get(), "");
   if (!type.citations.empty()) out += fmt::format("\nsources\n  {}\n", fmt::join(type.citations, "\n  "));
   return out + fmt::format("\nexample: {}\n", example_path(type.name));
 }

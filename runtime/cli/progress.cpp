@@ -30,7 +30,8 @@ std::string ProgressBar::line(std::string_view node, double share, std::chrono::
   std::string left = "";
   if (share > 0.02) {
     const double seconds = std::chrono::duration<double>(spent).count() * (1 - share) / share;
-    left = human_time(std::chrono::seconds(static_cast<std::int64_t>(seconds + 0.5))) + " left";
+    left = seconds < 1 ? "less than 1 s left"
+                       : human_time(std::chrono::seconds(static_cast<std::int64_t>(seconds + 0.5))) + " left";
   }
   std::string out = fmt::format("[{}{}] {:3.0f} %  {}  {}", std::string(full, '#'),
                                 std::string(bar - full, '.'), share * 100, node, left);
@@ -41,30 +42,38 @@ std::string ProgressBar::line(std::string_view node, double share, std::chrono::
 void ProgressBar::started(std::string_view node) {
   node_ = node;
   fraction_ = 0;
-  draw(false);
+  item_began_ = std::chrono::steady_clock::now();
+  draw();
 }
 
 void ProgressBar::progress(std::string_view node, double fraction) {
   node_ = node;
   fraction_ = fraction;
-  draw(false);
+  draw();
 }
 
 void ProgressBar::done(const WorkDone&) {
   ++finished_;
   fraction_ = 0;
-  draw(false);
+  draw();
 }
 
-void ProgressBar::draw(bool now) {
-  const auto t = std::chrono::steady_clock::now();
-  if (!now && (t - began_ < silence || t - drawn_ < interval)) return;
-  drawn_ = t;
+double ProgressBar::share(std::chrono::steady_clock::time_point now) const {
+  using seconds = std::chrono::duration<double>;
+  if (fraction_ > 0) {
+    const double before = seconds(item_began_ - began_).count(), spent = seconds(now - began_).count();
+    const double total = before + (spent - before) / fraction_;
+    return total > 0 ? spent / total : 0;
+  }
+  return items_ != 0 ? static_cast<double>(std::min(finished_, items_)) / static_cast<double>(items_) : 0;
+}
+
+void ProgressBar::draw() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - began_ < silence || now - drawn_ < interval) return;
+  drawn_ = now;
   visible_ = true;
-  const double share = items_ != 0 ? (static_cast<double>(std::min(finished_, items_)) + fraction_) /
-                                         static_cast<double>(items_)
-                                   : 0;
-  const std::string text = "\r\033[K" + line(node_, share, t - began_, terminal_width());
+  const std::string text = "\r\033[K" + line(node_, share(now), now - began_, terminal_width());
   std::fwrite(text.data(), 1, text.size(), stderr);
 }
 

@@ -1,8 +1,8 @@
-#include "runtime/app/simd.h"
+#include "nodes/kernels/simd/target.h"
 
 #include <hwy/targets.h>
 
-namespace frustum {
+namespace frustum::kernels {
 namespace {
 
 std::int64_t mask_of(Simd target) {
@@ -35,4 +35,4 @@ std::string_view simd_in_use() {
   return hwy::TargetName(targets & -targets);  // a smaller bit is a better target
 }
 
-}  // namespace frustum
+}  // namespace frustum::kernels
