@@ -70,77 +70,48 @@ void copy_rows(const Column& from, Column& to) {
   });
 }
 
-// Kept faces and pieces of cut ones, merged in the order of their source faces.
-struct Merged {
-  std::vector<std::uint32_t> source;  // old face of each new one
-  std::vector<std::uint32_t> piece;   // its number among the pieces, or `whole`
-  static constexpr std::uint32_t whole = ~0U;
-};
-Merged merged(std::span<const std::uint32_t> kept, std::span<const std::uint32_t> pieces) {
-  Merged m;
-  m.source.reserve(kept.size() + pieces.size());
-  m.piece.reserve(kept.size() + pieces.size());
-  std::size_t k = 0;
-  for (std::uint32_t p = 0; p < pieces.size(); ++p) {
-    for (; k < kept.size() && kept[k] < pieces[p]; ++k)
-      m.source.push_back(kept[k]), m.piece.push_back(Merged::whole);
-    m.source.push_back(pieces[p]), m.piece.push_back(p);
-  }
-  m.source.insert(m.source.end(), kept.begin() + static_cast<std::ptrdiff_t>(k), kept.end());
-  m.piece.resize(m.source.size(), Merged::whole);
-  return m;
+// The column of the kept faces with the rows of `more` behind them.
+Ref<Column> joined(const Column& old, std::span<const std::uint32_t> kept, const Column& more) {
+  const auto front = gather_faces(old, kept);
+  auto out = resized(old, front->rows() + more.rows());
+  copy_rows(*front, *out);
+  std::memcpy(static_cast<std::byte*>(out->data()) + front->bytes(), more.data(), more.bytes());
+  return out;
 }
 
 template <class R>
 Ref<Column> new_vertices(const Column& old, const clip::Pieces<R>& pieces) {
   auto out = resized(old, old.rows() + pieces.position.size());
   copy_rows(old, *out);
-  apply(pieces.vertices, old, *out, old.rows());
   if (old.name() == "position") {  // exact: the planes hold bit for bit
     const auto to = out->template values<glm::vec<4, R>>().subspan(old.rows());
     std::copy(pieces.position.begin(), pieces.position.end(), to.begin());
+  } else {
+    apply(pieces.vertices, old, *out, old.rows());
   }
   return out;
 }
 
 template <class R>
-Ref<Column> new_corners(const Column& old, const clip::Pieces<R>& pieces, const Merged& m) {
-  auto made = resized(old, pieces.corners.rows());
-  apply(pieces.corners, old, *made, 0);
-  const auto gathered = gather_faces(old, m.source);
-  auto out = std::const_pointer_cast<Column>(gathered);  // made above, not yet published
-  const std::size_t row = 3 * static_cast<std::size_t>(old.width()) * bytes_of(old.kind());
-  for (std::size_t f = 0; f < m.piece.size(); ++f)
-    if (m.piece[f] != Merged::whole)
-      std::memcpy(static_cast<std::byte*>(out->data()) + f * row,
-                  static_cast<const std::byte*>(made->data()) + m.piece[f] * row, row);
-  return gathered;
+Ref<Column> new_faces(const Column& old, std::span<const std::uint32_t> kept, const clip::Pieces<R>& pieces) {
+  if (old.name() == "triangle")
+    return joined(old, kept, *Column::make<glm::uvec3>("triangle", Domain::face, std::span(pieces.triangle)));
+  if (old.domain() == Domain::face) return joined(old, kept, *gather_faces(old, pieces.source));
+  auto corners = resized(old, pieces.corners.rows());
+  apply(pieces.corners, old, *corners, 0);
+  return joined(old, kept, *corners);
 }
 
+// Kept faces first, then the pieces of cut ones: in which order faces are drawn makes no difference.
 template <class R>
 Mesh with_pieces(const Mesh& mesh, std::span<const std::uint32_t> kept, const clip::Pieces<R>& pieces) {
-  const Merged m = merged(kept, pieces.source);
-  Mesh out = mesh;
-  out.columns.clear();
-  for (const auto& old : mesh.columns) {
-    if (old->name() == "triangle") {
-      auto triangle = Column::make<glm::uvec3>("triangle", Domain::face, m.source.size());
-      const auto from = old->values<glm::uvec3>();
-      const auto to = triangle->template values<glm::uvec3>();
-      for (std::size_t f = 0; f < to.size(); ++f)
-        to[f] = m.piece[f] == Merged::whole ? from[m.source[f]] : pieces.triangle[m.piece[f]];
-      out.columns.push_back(std::move(triangle));
-    } else if (old->domain() == Domain::vertex) {
-      out.columns.push_back(new_vertices(*old, pieces));
-    } else if (old->domain() == Domain::corner) {
-      out.columns.push_back(new_corners(*old, pieces, m));
-    } else {
-      out.columns.push_back(old->domain() == Domain::face ? gather_faces(*old, m.source) : old);
-    }
+  Mesh out = mesh.with(origin_of(mesh));
+  for (auto& column : out.columns) {
+    if (column->domain() == Domain::vertex)
+      column = new_vertices(*column, pieces);
+    else if (column->domain() != Domain::mesh)
+      column = new_faces(*column, kept, pieces);
   }
-  if (mesh.find("origin") == nullptr)
-    out.columns.push_back(
-        Column::make<std::uint32_t>("origin", Domain::face, std::span<const std::uint32_t>(m.source)));
   if (mesh.closed == true) out.closed = false;
   return out;
 }
@@ -194,8 +165,7 @@ NodeType nodes::clip_homogeneous() {
       .param("guard_band", &Params::guard_band,
              "Half-width of the x and y band that cuts; raising it cuts fewer faces.",
              {.unit = "w", .range = at_least(1)})
-      .output("mesh", &Outputs::mesh,
-              "The parts inside; winding and attributes are kept, origin names the source face.",
+      .output("mesh", &Outputs::mesh, "The parts inside, cut faces last; winding and attributes are kept.",
               {.space = Space::clip});
 }
 

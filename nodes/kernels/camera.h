@@ -133,8 +133,7 @@ inline glm::dvec3 eye_from_ndc(const Projection& p, const glm::dvec3& ndc) {
   return {ndc.x * distance / p.scale.x, ndc.y * distance / p.scale.y, -distance};
 }
 
-// The view volume's sides as half-spaces of homogeneous points: inside where dot(plane, p) >= 0. Near comes
-// first.
+// The view volume's sides, near first, as half-spaces of homogeneous points: inside where dot(plane, p) >= 0.
 inline std::array<glm::dvec4, 6> clip_planes(bool reversed_z, double guard_band = 1) {
   const glm::dvec4 plus(0, 0, 1, 1), minus(0, 0, -1, 1), above_zero(0, 0, 1, 0);
   return {reversed_z ? minus : plus,       reversed_z ? above_zero : minus,
@@ -171,8 +170,7 @@ struct Viewport {
   }
 };
 
-// x / w, y / w, z / w, each rounded once: 1 / w would overflow for w below 2^-128 though the quotients do
-// not.
+// x / w, y / w, z / w, each rounded once: 1 / w overflows for w below 2^-128, the quotients need not.
 template <std::floating_point R>
 glm::vec<3, R> divided(const glm::vec<4, R>& p) {
   return {p.x / p.w, p.y / p.w, p.z / p.w};

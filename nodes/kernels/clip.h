@@ -3,11 +3,9 @@
 //
 // Three promises that the plain Sutherland-Hodgman loop does not keep:
 //   - A crossing is measured from its inside end, so the two triangles that share an edge compute the same
-//   bits
-//     whichever way each one walks it. (Plainly: 92 % of edges differ, and cracks open.)
+//     bits whichever way each one walks it. (Plainly: 92 % of edges differ, and cracks open.)
 //   - A new vertex lies inside every plane it was cut by: its coordinate is set to the plane, not left to
-//   rounding.
-//     (Plainly: 30 % test as outside.) So clipping what was clipped changes nothing.
+//     rounding. (Plainly: 30 % test as outside.) So clipping what was clipped changes nothing.
 //   - Nothing is divided by w.
 // Source: Sutherland & Hodgman 1974, CACM 17:32; homogeneous form, Blinn & Newell 1978.
 

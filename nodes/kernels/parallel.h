@@ -28,17 +28,20 @@ void parallel_blocks(std::size_t n, std::size_t block, const Body& body) {
 // Elements of the usual block: enough work to hide the cost of handing it over.
 inline constexpr std::size_t usual_block = 16384;
 
-// The i < n for which keep(i), ascending. `keep` may be called from any thread.
-template <class Keep>
-std::vector<std::uint32_t> indices_where(std::size_t n, const Keep& keep) {
+// The i < n whose flag mark(begin, end, flags) sets in flags[i - begin], ascending; `mark` is called for blocks of at most
+// usual_block, from any thread, and fills its whole block with 0 or 1.
+template <class Mark>
+std::vector<std::uint32_t> indices_marked(std::size_t n, const Mark& mark) {
   const std::size_t blocks = (n + usual_block - 1) / usual_block;
   const auto found = std::make_unique_for_overwrite<std::uint32_t[]>(n);
   std::vector<std::size_t> first(blocks + 1, 0);
   parallel_blocks(n, usual_block, [&](std::size_t begin, std::size_t end) {
+    const auto flags = std::make_unique_for_overwrite<std::uint8_t[]>(end - begin);
+    mark(begin, end, flags.get());
     std::size_t at = begin;
     for (std::size_t i = begin; i < end; ++i) {
       found[at] = static_cast<std::uint32_t>(i);
-      at += keep(i) ? 1 : 0;  // without a branch: kept and dropped faces come in no order
+      at += flags[i - begin];  // without a branch: kept and dropped faces come in no order
     }
     first[begin / usual_block + 1] = at - begin;
   });
@@ -50,6 +53,14 @@ std::vector<std::uint32_t> indices_where(std::size_t n, const Keep& keep) {
                 kept.begin() + static_cast<std::ptrdiff_t>(first[k]));
   });
   return kept;
+}
+
+// The i < n for which keep(i), ascending. `keep` may be called from any thread.
+template <class Keep>
+std::vector<std::uint32_t> indices_where(std::size_t n, const Keep& keep) {
+  return indices_marked(n, [&keep](std::size_t begin, std::size_t end, std::uint8_t* flags) {
+    for (std::size_t i = begin; i < end; ++i) flags[i - begin] = keep(i) ? 1 : 0;
+  });
 }
 
 }  // namespace frustum::kernels

@@ -17,8 +17,7 @@ namespace frustum::project {
 // p_screen[i] = (x_px, y_px, z, 1/w) with x_px = (x/w + 1) W/2 and y_px = (1 - y/w) H/2, y down (errata E10),
 // where w > 0 and all four are finite; elsewhere zeros with no_point[i] = 1: the point is on or behind the
 // eye's plane, or was not finite. Returns how many of those there are. Quotients are rounded to R first, so
-// that the pixels are those of the NDC that project.divide shows. Requires equal sizes. Cost: 4 divisions a
-// point.
+// that the pixels are those of the NDC that project.divide shows. Requires equal sizes. 4 divisions.
 template <std::floating_point R>
 std::size_t clip_to_screen(const kernels::Viewport& viewport, std::span<const glm::vec<4, R>> p_clip,
                            std::span<glm::vec<4, R>> p_screen, std::span<std::uint8_t> no_point) {
