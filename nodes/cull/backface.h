@@ -44,7 +44,8 @@ auto corner_row(const Point& p) {
     return glm::vec<3, R>(p.x, p.y, 1);
 }
 
-// The same rows for the vector kernel, which takes y up and the third number as it lies: true where that turns the sign.
+// The same rows for the vector kernel, which takes y up and the third number as it lies: true where that
+// turns the sign.
 template <Rows rows>
 constexpr bool turns_sign = rows == Rows::eye_perspective || rows == Rows::screen;
 

@@ -28,8 +28,8 @@ void parallel_blocks(std::size_t n, std::size_t block, const Body& body) {
 // Elements of the usual block: enough work to hide the cost of handing it over.
 inline constexpr std::size_t usual_block = 16384;
 
-// The i < n whose flag mark(begin, end, flags) sets in flags[i - begin], ascending; `mark` is called for blocks of at most
-// usual_block, from any thread, and fills its whole block with 0 or 1.
+// The i < n whose flag mark(begin, end, flags) sets in flags[i - begin], ascending; `mark` is called for
+// blocks of at most usual_block, from any thread, and fills its whole block with 0 or 1.
 template <class Mark>
 std::vector<std::uint32_t> indices_marked(std::size_t n, const Mark& mark) {
   const std::size_t blocks = (n + usual_block - 1) / usual_block;

@@ -45,8 +45,8 @@ HWY_INLINE V signs_of(const Row& a, const Row& e, const Row& f) {
   const auto both = [](V p, V q) HWY_ATTR { return hn::Add(hn::Abs(p), hn::Abs(q)); };
   const auto size = hn::Add(hn::Add(hn::Mul(hn::Abs(a.x), both(m0, m1)), hn::Mul(hn::Abs(a.y), both(m2, m3))),
                             hn::Mul(hn::Abs(a.w), both(m4, m5)));
-  // Each term goes through 7 roundings, two of them those of the edges; 12 u leaves room for those of `size`, and 2^-90
-  // for products that underflow.
+  // Each term goes through 7 roundings, two of them those of the edges; 12 u leaves room for those of
+  // `size`, and 2^-90 for products that underflow.
   const auto bound = hn::Mul(size, hn::Set(d, 12 * 0x1p-24F));
   const auto clear = hn::And(hn::Gt(hn::Abs(det), bound), hn::Gt(size, hn::Set(d, 0x1p-90F)));
   return hn::IfThenElse(clear, hn::CopySign(hn::Set(d, 1.0F), det),
