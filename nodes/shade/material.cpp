@@ -20,12 +20,20 @@ struct Outputs {
   Ref<Material> material;
 };
 
+double lobe_of(const Material& m) {
+  switch (m.model) {
+    case Reflection::lambert: return 0;
+    case Reflection::phong: return phong_reflectance(m.shininess);
+    case Reflection::blinn: break;
+  }
+  return blinn_reflectance(m.shininess);
+}
+
 Outputs run(const Inputs&, const Params& p, Context& ctx) {
   const Material m{p.name, p.model, p.ambient.rgb, p.diffuse.rgb, p.specular.rgb, p.shininess};
-  const glm::dvec3 highlight = p.model == Reflection::lambert ? glm::dvec3{0} : m.specular;
-  if (const double share = largest_reflectance(m.diffuse, highlight); share > 1)
+  if (const double share = largest_reflectance(m.diffuse, m.specular, lobe_of(m)); share > 1)
     ctx.warn("makes_energy",
-             fmt::format("diffuse and specular add up to {:.3g}: the surface makes light", share));
+             fmt::format("the surface sends back {:.3g} of the light that falls on it", share));
   return {std::make_shared<Material>(m)};
 }
 

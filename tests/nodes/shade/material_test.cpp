@@ -1,8 +1,11 @@
 #include "runtime/buffers/material.h"
 #include "nodes/all_nodes.h"
+#include "nodes/kernels/lighting.h"
 #include "tests/support/tiles.h"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace frustum {
 namespace {
@@ -26,9 +29,30 @@ TEST(ShadeMaterial, SaysWhereTheSurfaceMakesLight) {
     test::run_geometry(nodes::shade_material(), params, {}, Precision::single, &ctx);
     return ctx.warnings().size();
   };
-  EXPECT_EQ(warnings(R"({"diffuse": 0.6, "specular": 0.5})"), 1u);
-  EXPECT_EQ(warnings(R"({"diffuse": 0.6, "specular": 0.4})"), 0u);
-  EXPECT_EQ(warnings(R"({"diffuse": 0.6, "specular": 0.5, "model": "lambert"})"), 0u);
+  EXPECT_EQ(warnings(R"({"diffuse": 0.7, "specular": 0.4, "shininess": 60})"), 0u);
+  EXPECT_EQ(warnings(R"({"diffuse": 0.7, "specular": 0.4, "shininess": 1})"), 1u)
+      << "a lobe as wide as the hemisphere";
+  EXPECT_EQ(warnings(R"({"diffuse": 0.99, "specular": 0.4, "shininess": 60})"), 1u);
+  EXPECT_EQ(warnings(R"({"diffuse": 0.99, "specular": 0.4, "shininess": 60, "model": "lambert"})"), 0u);
+}
+
+TEST(ShadeMaterial, ReflectanceIsTheIntegralOfTheLobe) {
+  const kernels::LightSource<double> light{false, {1, 1, 1}, {0, 0, 1}, {}};
+  for (const auto kind : {kernels::Highlight::phong, kernels::Highlight::blinn})
+    for (const double e : {0.0, 1.0, 7.5, 60.0}) {
+      kernels::LightSetup<double> s{{&light, 1}, {}, kind, kernels::Exponent<double>(e)};
+      const int n = 4000;
+      double sum =
+          0;  // over z = cos(theta): integral of f cos / pi over the hemisphere = integral of 2 f z dz
+      for (int i = 0; i < n; ++i) {
+        const double z = (i + 0.5) / n;
+        s.eye = {std::sqrt(1 - z * z), 0, z};
+        sum += 2 * z / n * kernels::receive(s, {0, 0, 1}, {0, 0, 0}).specular[0];
+      }
+      const double want =
+          kind == kernels::Highlight::phong ? 2 / (e + 2) : 8 * (e + std::exp2(-e / 2)) / ((e + 2) * (e + 4));
+      EXPECT_NEAR(sum, want, 1e-4) << e;  // the midpoint rule over 1/n^2, and the jump of cos^0
+    }
 }
 
 TEST(ShadeMaterial, RefusesNegativeShininess) {
