@@ -26,8 +26,8 @@ struct Outputs {
 
 struct State {
   ColorConversion conversion;
-  std::array<int, 3> color = {};    // planes R, G, B; unused where nothing is converted
-  std::optional<int> alpha = {};    // set where colours are divided by it
+  std::array<int, 3> color = {};  // planes R, G, B; unused where nothing is converted
+  std::optional<int> alpha = {};  // set where colours are divided by it
   bool converts(int plane) const {
     return !conversion.identity() && std::find(color.begin(), color.end(), plane) != color.end();
   }
@@ -44,9 +44,11 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context&) {
   State state{.conversion = config->conversion(from, p.to, p.engine)};
   if (!state.conversion.identity()) {
     state.color = {in.image.read("R"), in.image.read("G"), in.image.read("B")};
-    if (frame.alpha == Alpha::premultiplied && !state.conversion.linear()) state.alpha = in.image.try_read("A");
+    if (frame.alpha == Alpha::premultiplied && !state.conversion.linear())
+      state.alpha = in.image.try_read("A");
     const PlaneKind kind = kind_of(frame, state.color[0]);
-    for (const int plane : {state.color[0], state.color[1], state.color[2], state.alpha.value_or(state.color[0])})
+    for (const int plane :
+         {state.color[0], state.color[1], state.color[2], state.alpha.value_or(state.color[0])})
       if (kind == PlaneKind::u32 || kind_of(frame, plane) != kind)
         throw NodeError("wrong_plane_kind", "R, G, B and A must be real numbers of one precision");
   }
@@ -59,10 +61,12 @@ template <class T>
 void pass_plane(const Tile& in, const Tile& out, int plane) {
   const Rect& r = out.rect();
   for (int s = 0; s < out.samples(); ++s)
-    for (int y = r.y0; y < r.y1; ++y) std::copy_n(in.row<const T>(plane, s, y), r.width(), out.row<T>(plane, s, y));
+    for (int y = r.y0; y < r.y1; ++y)
+      std::copy_n(in.row<const T>(plane, s, y), r.width(), out.row<T>(plane, s, y));
 }
 
-// Converts batches of whole rows, so that a call of the library has some thousand pixels however narrow the tile is.
+// Converts batches of whole rows, so that a call of the library has some thousand pixels however narrow the
+// tile is.
 template <class R>
 void convert_tile(const State& state, const Tile& in, const Tile& out, Arena& arena) {
   const Rect& r = out.rect();
@@ -88,7 +92,8 @@ void convert_tile(const State& state, const Tile& in, const Tile& out, Arena& ar
         if (!out.has(state.color[c])) continue;
         const R* from = scratch[c].data();
         if (state.alpha) multiply_by_alpha(alpha, scratch[c].data(), n);
-        for (int y = y0; y < y1; ++y, from += width) std::copy_n(from, width, out.row<R>(state.color[c], sample, y));
+        for (int y = y0; y < y1; ++y, from += width)
+          std::copy_n(from, width, out.row<R>(state.color[c], sample, y));
       }
     }
 }
@@ -109,8 +114,10 @@ void tile(const State& state, const TilesOf<Inputs>& inputs, const TilesOf<Outpu
     }
   }
   if (!wanted) return;
-  if (kind_of(out.frame(), state.color[0]) == PlaneKind::f64) convert_tile<double>(state, in, out, arena);
-  else convert_tile<float>(state, in, out, arena);
+  if (kind_of(out.frame(), state.color[0]) == PlaneKind::f64)
+    convert_tile<double>(state, in, out, arena);
+  else
+    convert_tile<float>(state, in, out, arena);
 }
 
 }  // namespace
@@ -121,12 +128,18 @@ NodeType nodes::color_convert() {
       .cite("IEC 61966-2-1:1999; ITU-R BT.709-6, BT.2020-2; Adobe RGB (1998); SMPTE ST 2065-1; OpenColorIO 2")
       .covers(105)
       .foreign()
-      .input("image", &Inputs::image, "Planes R, G and B, divided by A where that needs it; other planes pass.")
-      .param("to", &Params::to, "Colour space of the result: srgb, display_p3, rec2020, acescg ... or one of the configuration.")
-      .param("from", &Params::from, "Colour space of the input; empty: the image's own, and lin_rec709 where it has none.")
-      .param("config", &Params::config, "OpenColorIO configuration; empty: the file that $OCIO names, else the embedded one.")
-      .param("engine", &Params::engine, "Who converts between embedded spaces: frustum's exact curves, or OpenColorIO.")
-      .output("image", &Outputs::image, "The same window, samples and planes, in the colour space asked for.");
+      .input("image", &Inputs::image,
+             "Planes R, G and B, divided by A where that needs it; other planes pass.")
+      .param("to", &Params::to,
+             "Colour space of the result: srgb, display_p3, rec2020, acescg ... or one of the configuration.")
+      .param("from", &Params::from,
+             "Colour space of the input; empty: the image's own, and lin_rec709 where it has none.")
+      .param("config", &Params::config,
+             "OpenColorIO configuration; empty: the file that $OCIO names, else the embedded one.")
+      .param("engine", &Params::engine,
+             "Who converts between embedded spaces: frustum's exact curves, or OpenColorIO.")
+      .output("image", &Outputs::image,
+              "The same window, samples and planes, in the colour space asked for.");
 }
 
 }  // namespace frustum

@@ -20,7 +20,8 @@ struct Outputs {
 
 Outputs run(const Inputs&, const Params& p, Context& ctx) {
   if (const std::string kind = extension_of(p.file.written); !p.file.empty() && kind != "obj")
-    throw NodeError("unknown_format", fmt::format("{}: meshes are read from .obj files, not from .{}", p.file.written, kind));
+    throw NodeError("unknown_format",
+                    fmt::format("{}: meshes are read from .obj files, not from .{}", p.file.written, kind));
   const FileBytes bytes(p.file);
   return {std::make_shared<Mesh>(read_obj(bytes.text(), p.file, ctx))};
 }
@@ -31,8 +32,10 @@ NodeType nodes::io_load_mesh() {
   return node("io.load_mesh", run)
       .doc("Reads a triangle mesh from a Wavefront OBJ file.")
       .cite("Wavefront, The Advanced Visualizer: Object Files (.obj), appendix B1")
-      .param("file", &Params::file, "An OBJ file; polygons become triangles, usemtl gives each face its material.")
-      .output("mesh", &Outputs::mesh, "One vertex for each distinct v/vt/vn; normals that the file lacks are computed.",
+      .param("file", &Params::file,
+             "An OBJ file; polygons become triangles, usemtl gives each face its material.")
+      .output("mesh", &Outputs::mesh,
+              "One vertex for each distinct v/vt/vn; normals that the file lacks are computed.",
               {.space = Space::object});
 }
 

@@ -28,7 +28,8 @@ Json parse(std::string_view text, const File& file) {
   } catch (const Json::parse_error& e) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(e.byte, text.size()));
     const auto line = 1 + std::count(text.begin(), end, '\n');
-    throw NodeError("malformed_file", fmt::format("{}:{}: this is not JSON (byte {})", file.name, line, e.byte));
+    throw NodeError("malformed_file",
+                    fmt::format("{}:{}: this is not JSON (byte {})", file.name, line, e.byte));
   } catch (const Json::exception&) {  // a number beyond the range of double
     throw NodeError("malformed_file", fmt::format("{}: a number is too large", file.name));
   }
@@ -53,14 +54,16 @@ glm::dvec3 read_point(const Json& json, std::size_t i, const File& file) {
   return p;
 }
 
-std::array<std::uint32_t, 16> read_patch(const Json& json, std::size_t i, std::size_t points, const File& file) {
+std::array<std::uint32_t, 16> read_patch(const Json& json, std::size_t i, std::size_t points,
+                                         const File& file) {
   const std::string pointer = fmt::format("/patches/{}", i);
   if (!json.is_array() || json.size() != 16) file.fail(pointer, "a patch is an array of 16 indices");
   std::array<std::uint32_t, 16> patch{};
   for (std::size_t k = 0; k < 16; ++k) {
     const Json& n = json[k];
     if (!n.is_number_unsigned() || n.get<std::uint64_t>() >= points)
-      file.fail(fmt::format("{}/{}", pointer, k), fmt::format("{} is not the index of one of the {} points", n.dump(), points));
+      file.fail(fmt::format("{}/{}", pointer, k),
+                fmt::format("{} is not the index of one of the {} points", n.dump(), points));
     patch[k] = n.get<std::uint32_t>();
   }
   return patch;
@@ -95,7 +98,8 @@ Surface parse_patches(std::string_view text, std::string_view name) {
   Surface s;
   const Json &points = array_at(root, "points", file), &patches = array_at(root, "patches", file);
   for (std::size_t i = 0; i < points.size(); ++i) s.points.push_back(read_point(points[i], i, file));
-  for (std::size_t i = 0; i < patches.size(); ++i) s.patches.push_back(read_patch(patches[i], i, points.size(), file));
+  for (std::size_t i = 0; i < patches.size(); ++i)
+    s.patches.push_back(read_patch(patches[i], i, points.size(), file));
   return s;
 }
 
@@ -103,8 +107,10 @@ NodeType nodes::io_load_patches() {
   return node("io.load_patches", run)
       .doc("Reads bicubic Bezier patches from a JSON file.")
       .cite("Newell 1975, The Utilization of Procedure Models in Digital Image Synthesis (the teapot)")
-      .param("file", &Params::file, "A file of format frustum.patches/1: points, and patches of 16 indices into them.")
-      .output("surface", &Outputs::surface, "The patches in object space; shared indices are shared control points.",
+      .param("file", &Params::file,
+             "A file of format frustum.patches/1: points, and patches of 16 indices into them.")
+      .output("surface", &Outputs::surface,
+              "The patches in object space; shared indices are shared control points.",
               {.space = Space::object});
 }
 

@@ -1,5 +1,5 @@
-// Transfer curves of colour spaces, and the change from one space to another: decode, matrix, encode. The truth for
-// every Real; simd/transfer.h has the twin for float, operation by operation.
+// Transfer curves of colour spaces, and the change from one space to another: decode, matrix, encode. The
+// truth for every Real; simd/transfer.h has the twin for float, operation by operation.
 //
 // Curves are odd: a negative value is the negative of its magnitude's image, so that colours outside a gamut
 // survive a round trip. NaN stays NaN, infinity infinity.
@@ -17,8 +17,8 @@ namespace frustum::kernels {
 
 enum class Curve : std::uint8_t {
   linear,
-  srgb,       ///< IEC 61966-2-1: two pieces that meet at 0.0031308 with a step of 3e-8; also Display P3
-  rec709,     ///< ITU-R BT.709 and BT.2020 camera curve, with the constants that make it smooth (BT.2020-2, table 4)
+  srgb,  ///< IEC 61966-2-1: two pieces that meet at 0.0031308 with a step of 3e-8; also Display P3
+  rec709,  ///< BT.709 and BT.2020 camera curve, with the constants that make it smooth
   adobe_rgb,  ///< exponent 563/256, Adobe RGB (1998) section 4.3.1.2
 };
 
@@ -29,7 +29,8 @@ struct CurveShape {
 constexpr CurveShape shape_of(Curve c) {
   switch (c) {
     case Curve::srgb: return {2.4, 1.055, 0.055, 12.92, 0.0031308};
-    // The solution of scale knee^0.45 - offset = slope knee, 0.45 scale knee^-0.55 = slope, offset = scale - 1.
+    // The solution of scale knee^0.45 - offset = slope knee, 0.45 scale knee^-0.55 = slope, offset = scale
+    // - 1.
     case Curve::rec709: return {1 / 0.45, 1.09929682680944, 0.09929682680944, 4.5, 0.018053968510807};
     case Curve::adobe_rgb: return {563.0 / 256, 1, 0, 0, -1};
     case Curve::linear: break;
@@ -45,8 +46,8 @@ struct CurveIn {
 template <std::floating_point R>
 constexpr CurveIn<R> encoder(Curve c) {
   const CurveShape s = shape_of(c);
-  return {static_cast<R>(1 / s.gamma), static_cast<R>(s.scale), static_cast<R>(s.offset), static_cast<R>(s.slope),
-          static_cast<R>(s.knee)};
+  return {static_cast<R>(1 / s.gamma), static_cast<R>(s.scale), static_cast<R>(s.offset),
+          static_cast<R>(s.slope), static_cast<R>(s.knee)};
 }
 /// sRGB decodes linearly up to 0.04045, the standard's own rounding of the image of the knee.
 template <std::floating_point R>
@@ -57,8 +58,8 @@ constexpr CurveIn<R> decoder(Curve c) {
           static_cast<R>(s.slope > 0 ? 1 / s.slope : 0), static_cast<R>(knee)};
 }
 
-/// Linear to encoded, and back. Relative error in float below 4e-7, in double below 4e-16 plus that of the curve's
-/// own condition at the offset.
+/// Linear to encoded, and back. Relative error in float below 4e-7, in double below 4e-16 plus that of the
+/// curve's own condition at the offset.
 template <std::floating_point R>
 R encode(Curve c, R v) {
   if (c == Curve::linear) return v;
@@ -77,7 +78,7 @@ R decode(Curve c, R v) {
 /// From one colour space to another.
 struct ColorMap {
   Curve from = Curve::linear, to = Curve::linear;
-  bool same_primaries = true;        ///< the matrix is the identity and left out
+  bool same_primaries = true;                               ///< the matrix is the identity and left out
   std::array<double, 9> matrix{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row by row
 };
 

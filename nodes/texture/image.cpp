@@ -34,12 +34,15 @@ struct Source {
 
 Source find_source(const Frame& f) {
   if (f.samples() > 1)
-    throw NodeError("sampled_image", "a texture takes one value a pixel; supersample.resolve filters samples to that");
+    throw NodeError("sampled_image",
+                    "a texture takes one value a pixel; supersample.resolve filters samples to that");
   if (f.window.empty()) throw NodeError("empty_image", "the image has no pixels");
   Source s{.color = {}, .alpha = f.find("A")};
   const auto r = f.find("R"), g = f.find("G"), b = f.find("B");
-  if (r && g && b) s.color = {*r, *g, *b};
-  else if (f.planes.size() != 1) throw NodeError("missing_plane", "the image needs planes R, G and B, or just one plane");
+  if (r && g && b)
+    s.color = {*r, *g, *b};
+  else if (f.planes.size() != 1)
+    throw NodeError("missing_plane", "the image needs planes R, G and B, or just one plane");
   for (const int plane : s.color)
     if (f.planes[static_cast<std::size_t>(plane)].kind == PlaneKind::u32)
       throw NodeError("wrong_plane_kind", fmt::format("plane {} counts; a texture takes real numbers",
@@ -47,8 +50,10 @@ Source find_source(const Frame& f) {
   return s;
 }
 
-// One row in linear light, interleaved. Straight alpha is multiplied in at the end, premultiplied taken out for a curve.
-void convert_row(const Raster& raster, const Source& source, const ColorConversion& conversion, int y, std::span<float> rgba) {
+// One row in linear light, interleaved. Straight alpha is multiplied in at the end, premultiplied taken out
+// for a curve.
+void convert_row(const Raster& raster, const Source& source, const ColorConversion& conversion, int y,
+                 std::span<float> rgba) {
   const Frame& f = raster.frame();
   const auto width = static_cast<std::size_t>(f.window.width());
   std::array<std::vector<float>, 4> row;
@@ -75,9 +80,11 @@ void convert_row(const Raster& raster, const Source& source, const ColorConversi
 MipPyramid::Level first_level(const Raster& raster, const Source& source, const ColorConversion& conversion) {
   const Rect w = raster.frame().window;
   const std::size_t row = 4 * static_cast<std::size_t>(w.width());
-  MipPyramid::Level level{w.width(), w.height(), std::vector<float>(row * static_cast<std::size_t>(w.height()))};
+  MipPyramid::Level level{w.width(), w.height(),
+                          std::vector<float>(row * static_cast<std::size_t>(w.height()))};
   tbb::parallel_for(0, w.height(), [&](int y) {
-    convert_row(raster, source, conversion, w.y0 + y, std::span(level.rgba).subspan(row * static_cast<std::size_t>(y), row));
+    convert_row(raster, source, conversion, w.y0 + y,
+                std::span(level.rgba).subspan(row * static_cast<std::size_t>(y), row));
   });
   return level;
 }
@@ -87,7 +94,8 @@ MipPyramid::Level next_level(const MipPyramid::Level& from) {
   const std::size_t row = 4 * static_cast<std::size_t>(to.width);
   to.rgba.resize(row * static_cast<std::size_t>(to.height));
   tbb::parallel_for(0, to.height, [&](int y) {
-    halve_row(from.rgba, from.width, from.height, y, std::span(to.rgba).subspan(row * static_cast<std::size_t>(y), row));
+    halve_row(from.rgba, from.width, from.height, y,
+              std::span(to.rgba).subspan(row * static_cast<std::size_t>(y), row));
   });
   return to;
 }
@@ -115,10 +123,12 @@ NodeType nodes::texture_image() {
       .cite("Williams 1983, Pyramidal parametrics")
       .covers(30)
       .foreign()
-      .input("image", &Inputs::image, "R, G, B (or one plane, taken as grey) and A, converted from the image's colour space.")
+      .input("image", &Inputs::image,
+             "R, G, B (or one plane, taken as grey) and A, converted from the image's colour space.")
       .param("wrap_u", &Params::wrap_u, "What lies beyond u = 0 and 1.")
       .param("wrap_v", &Params::wrap_v, "What lies beyond v = 0 and 1.")
-      .param("pyramid", &Params::pyramid, "Whether smaller levels are made, which trilinear lookup needs; a third more memory.")
+      .param("pyramid", &Params::pyramid,
+             "Whether smaller levels are made, which trilinear lookup needs; a third more memory.")
       .output("texture", &Outputs::texture, "The texture; the top row of the image is at v = 1.");
 }
 

@@ -8,8 +8,9 @@
 
 namespace frustum {
 
-// `Ops` has the static functions bytes(const T&), hash(const T&, Hasher&), health(const T&), summary(const T&), and
-// may have table(const T&, first, count), parts(const T&, visit), raster(const T&), from_raster(Raster) and from_json(const Json&, ParamReader&).
+// `Ops` has the static functions bytes(const T&), hash(const T&, Hasher&), health(const T&), summary(const
+// T&), and may have table(const T&, first, count), parts(const T&, visit), raster(const T&),
+// from_raster(Raster) and from_json(const Json&, ParamReader&).
 template <class T, class Ops>
 BufferType make_buffer_type(std::string_view name, std::string_view doc, std::string_view color) {
   BufferType t{.name = name, .doc = doc, .color = color};

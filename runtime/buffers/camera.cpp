@@ -23,9 +23,19 @@ struct Ops {
   // far_z may be infinite; as a NaN it still counts.
   static Health health(const Camera& c) {
     const std::pair<std::string_view, double> values[] = {
-        {"eye", c.eye.x},       {"eye", c.eye.y},       {"eye", c.eye.z},   {"target", c.target.x}, {"target", c.target.y},
-        {"target", c.target.z}, {"up", c.up.x},         {"up", c.up.y},     {"up", c.up.z},         {"fov_y", c.fov_y},
-        {"near_z", c.near_z},   {"height", c.height},   {"far_z", std::isinf(c.far_z) && c.far_z > 0 ? 0 : c.far_z}};
+        {"eye", c.eye.x},
+        {"eye", c.eye.y},
+        {"eye", c.eye.z},
+        {"target", c.target.x},
+        {"target", c.target.y},
+        {"target", c.target.z},
+        {"up", c.up.x},
+        {"up", c.up.y},
+        {"up", c.up.z},
+        {"fov_y", c.fov_y},
+        {"near_z", c.near_z},
+        {"height", c.height},
+        {"far_z", std::isinf(c.far_z) && c.far_z > 0 ? 0 : c.far_z}};
     return health_of("camera", values);
   }
   static Json summary(const Camera& c) {
@@ -45,7 +55,8 @@ struct Ops {
 
 template <>
 const BufferType& buffer_type<Camera>() {
-  static const BufferType type = make_buffer_type<Camera, Ops>("camera", "Where the picture is taken from, and its size.", "#6fa35c");
+  static const BufferType type =
+      make_buffer_type<Camera, Ops>("camera", "Where the picture is taken from, and its size.", "#6fa35c");
   return type;
 }
 

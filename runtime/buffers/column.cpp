@@ -20,10 +20,11 @@ constexpr std::align_val_t cache_line{64};
 
 std::shared_ptr<void> aligned_storage(std::size_t rows, std::size_t row_bytes) {
   const auto fail = [&] {
-    throw WorldError("out_of_memory", fmt::format("no memory for a column of {} rows of {} bytes", rows, row_bytes));
+    throw WorldError("out_of_memory",
+                     fmt::format("no memory for a column of {} rows of {} bytes", rows, row_bytes));
   };
   if (rows > std::numeric_limits<std::size_t>::max() / 2 / row_bytes) fail();
-  void* p = ::operator new(rows * row_bytes, cache_line, std::nothrow);
+  void* p = ::operator new(rows* row_bytes, cache_line, std::nothrow);
   if (p == nullptr) fail();
   return {p, [](void* data) { ::operator delete(data, cache_line); }};
 }
@@ -38,8 +39,14 @@ struct Column::HealthMemo {
 std::string_view name_of(Domain d) { return domain_names[static_cast<std::size_t>(d)]; }
 std::string_view name_of(NumberKind k) { return kind_names[static_cast<std::size_t>(k)]; }
 
-Column::Column(std::string_view name, Domain domain, NumberKind kind, int width, std::size_t rows, Space space)
-    : name_(name), domain_(domain), kind_(kind), width_(width), rows_(rows), space_(space),
+Column::Column(std::string_view name, Domain domain, NumberKind kind, int width, std::size_t rows,
+               Space space)
+    : name_(name),
+      domain_(domain),
+      kind_(kind),
+      width_(width),
+      rows_(rows),
+      space_(space),
       data_(aligned_storage(rows, static_cast<std::size_t>(width) * bytes_of(kind))),
       health_(std::make_shared<HealthMemo>()) {}
 
@@ -77,25 +84,30 @@ Health Column::count_health() const {
 }
 
 void Column::hash(Hasher& h) const {
-  h.text(name_).value(domain_).value(kind_).value(width_).value(rows_).value(space_).bytes(data_.get(), bytes());
+  h.text(name_).value(domain_).value(kind_).value(width_).value(rows_).value(space_).bytes(data_.get(),
+                                                                                           bytes());
 }
 
 void Column::require(NumberKind kind, int width) const {
   if (kind == kind_ && width == width_) return;
-  throw std::logic_error(fmt::format("column {} holds {} x {}, not {} x {}", name_, name_of(kind_), width_, name_of(kind), width));
+  throw std::logic_error(fmt::format("column {} holds {} x {}, not {} x {}", name_, name_of(kind_), width_,
+                                     name_of(kind), width));
 }
 
 Ref<Column> as_precision(Ref<Column> column, NumberKind real) {
   const NumberKind from = column->kind();
   if (from == real) return column;
   if (from == NumberKind::f64 && real == NumberKind::f32)
-    throw NodeError("narrowing", fmt::format("column {} is double and this node computes in single; narrowing loses digits, so it "
-                                             "is never silent: give this node or the graph precision \"double\"",
-                                             column->name()));
+    throw NodeError(
+        "narrowing",
+        fmt::format("column {} is double and this node computes in single; narrowing loses digits, so it "
+                    "is never silent: give this node or the graph precision \"double\"",
+                    column->name()));
   if (from != NumberKind::f32 || real != NumberKind::f64)
-    throw NodeError("wrong_column_type",
-                    fmt::format("column {} holds {}, where real numbers are needed", column->name(), name_of(from)));
-  auto wide = std::make_shared<Column>(column->name(), column->domain(), real, column->width(), column->rows(), column->space());
+    throw NodeError("wrong_column_type", fmt::format("column {} holds {}, where real numbers are needed",
+                                                     column->name(), name_of(from)));
+  auto wide = std::make_shared<Column>(column->name(), column->domain(), real, column->width(),
+                                       column->rows(), column->space());
   const auto n = static_cast<std::ptrdiff_t>(column->rows()) * column->width();
   const auto* source = static_cast<const float*>(column->data());
   auto* target = static_cast<double*>(const_cast<void*>(wide->data()));

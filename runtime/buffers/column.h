@@ -45,9 +45,11 @@ constexpr NumberKind number_kind_of = std::is_same_v<T, float>          ? Number
 // A column is immutable once it is part of a published mesh, and shared by every mesh that did not change it.
 class Column {
  public:
-  // `rows` elements of type T (a number or a glm vector of them), not initialised: the maker fills `values<T>()`.
+  // `rows` elements of type T (a number or a glm vector of them), not initialised: the maker fills
+  // `values<T>()`.
   template <class T>
-  static std::shared_ptr<Column> make(std::string_view name, Domain domain, std::size_t rows, Space space = Space::none) {
+  static std::shared_ptr<Column> make(std::string_view name, Domain domain, std::size_t rows,
+                                      Space space = Space::none) {
     using E = Element<T>;
     return std::make_shared<Column>(name, domain, number_kind_of<typename E::number>, E::width, rows, space);
   }
@@ -90,7 +92,8 @@ class Column {
   // The same storage under another name or in another space.
   Ref<Column> renamed(std::string_view name, Space space) const;
 
-  // Counted once for each storage: every mesh that shares the column asks again. Call it on published columns only.
+  // Counted once for each storage: every mesh that shares the column asks again. Call it on published
+  // columns only.
   Health health() const;
   void hash(Hasher&) const;
 
@@ -109,8 +112,8 @@ class Column {
   std::shared_ptr<HealthMemo> health_;
 };
 
-// A real column in the precision R: itself, or widened from f32 to f64. Narrowing throws NodeError("narrowing"): it is
-// a decision of the graph's author, never silent.
+// A real column in the precision R: itself, or widened from f32 to f64. Narrowing throws
+// NodeError("narrowing"): it is a decision of the graph's author, never silent.
 Ref<Column> as_precision(Ref<Column> column, NumberKind real);
 template <class R>
 Ref<Column> as_real(Ref<Column> column) {

@@ -6,8 +6,8 @@
 #include "runtime/core/health.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <tbb/parallel_for.h>
+#include <nlohmann/json.hpp>
 
 #include <type_traits>
 
@@ -65,7 +65,8 @@ Json plane_summary(const Raster& r, int plane) {
   const Tile t = r.view();
   Hasher h;
   hash_plane(r, plane, h);
-  Json out = {{"name", p.name}, {"kind", kind_names[static_cast<std::size_t>(p.kind)]}, {"digest", to_hex(h.done())}};
+  Json out = {
+      {"name", p.name}, {"kind", kind_names[static_cast<std::size_t>(p.kind)]}, {"digest", to_hex(h.done())}};
   with_type(p.kind, [&]<class T>(const T*) {
     std::vector<T> values;
     values.reserve(static_cast<std::size_t>(t.rect().area()) * static_cast<std::size_t>(t.samples()));
@@ -144,8 +145,8 @@ struct Ops {
 
 template <>
 const BufferType& buffer_type<Image>() {
-  static const BufferType type =
-      make_buffer_type<Image, Ops<Image>>("image", "Named planes of numbers over pixels: colours or attributes.", "#d9a441");
+  static const BufferType type = make_buffer_type<Image, Ops<Image>>(
+      "image", "Named planes of numbers over pixels: colours or attributes.", "#d9a441");
   return type;
 }
 template <>

@@ -11,7 +11,8 @@ namespace frustum {
 
 // Any named planes: "R" "G" "B" "A" of colour, or the attributes of visible points.
 //
-// The points of rasterize.attributes hold, at each covered sample (all zero and id = no_face elsewhere), those of
+// The points of rasterize.attributes hold, at each covered sample (all zero and id = no_face elsewhere),
+// those of
 //   id                         u32   the face seen
 //   uv.u uv.v                  real  texture coordinates
 //   uv.du_dx uv.dv_dx uv.du_dy uv.dv_dy   their screen derivatives, per pixel

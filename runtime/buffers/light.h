@@ -1,4 +1,5 @@
-// Lights. Colours are linear Rec.709 radiance factors: a white Lambert surface facing a light of colour 1 has colour 1.
+// Lights. Colours are linear Rec.709 radiance factors: a white Lambert surface facing a light of colour 1
+// has colour 1.
 #pragma once
 
 #include "runtime/core/buffer.h"
@@ -13,8 +14,8 @@ struct Light {
   enum class Kind : std::uint8_t { ambient, directional, point };
   Kind kind = Kind::ambient;
   glm::dvec3 color{1};
-  glm::dvec3 direction{0, -1, 0};  // directional: the way the light travels, world space, unit length
-  glm::dvec3 position{0};          // point: world space
+  glm::dvec3 direction{0, -1, 0};   // directional: the way the light travels, world space, unit length
+  glm::dvec3 position{0};           // point: world space
   glm::dvec3 attenuation{1, 0, 0};  // point: intensity is divided by x + y d + z d^2, d the distance
 };
 

@@ -19,9 +19,10 @@ struct Ops {
   }
   static Health health(const Material& m) {
     const std::pair<std::string_view, double> values[] = {
-        {"ambient", m.ambient.x},   {"ambient", m.ambient.y},   {"ambient", m.ambient.z},  {"diffuse", m.diffuse.x},
-        {"diffuse", m.diffuse.y},   {"diffuse", m.diffuse.z},   {"specular", m.specular.x}, {"specular", m.specular.y},
-        {"specular", m.specular.z}, {"shininess", m.shininess}};
+        {"ambient", m.ambient.x},   {"ambient", m.ambient.y},   {"ambient", m.ambient.z},
+        {"diffuse", m.diffuse.x},   {"diffuse", m.diffuse.y},   {"diffuse", m.diffuse.z},
+        {"specular", m.specular.x}, {"specular", m.specular.y}, {"specular", m.specular.z},
+        {"shininess", m.shininess}};
     return health_of("material", values);
   }
   static Json summary(const Material& m) {
@@ -38,7 +39,8 @@ struct Ops {
 
 template <>
 const BufferType& buffer_type<Material>() {
-  static const BufferType type = make_buffer_type<Material, Ops>("material", "What a surface is made of.", "#c76f5a");
+  static const BufferType type =
+      make_buffer_type<Material, Ops>("material", "What a surface is made of.", "#c76f5a");
   return type;
 }
 

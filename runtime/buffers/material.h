@@ -19,14 +19,15 @@ constexpr auto choices(Reflection) {
                     std::pair{Reflection::blinn, "blinn"}};
 }
 
-// Coefficients are linear Rec.709; diffuse + specular above 1 makes energy, which is reported and not forbidden.
+// Coefficients are linear Rec.709; diffuse + specular above 1 makes energy, which is reported and not
+// forbidden.
 struct Material {
   std::string name = {};
   Reflection model = Reflection::blinn;
-  glm::dvec3 ambient{1};     // scales the ambient lights, with the diffuse colour
+  glm::dvec3 ambient{1};  // scales the ambient lights, with the diffuse colour
   glm::dvec3 diffuse{0.8};
   glm::dvec3 specular{0};
-  double shininess = 32;     // exponent of the lobe, >= 0
+  double shininess = 32;  // exponent of the lobe, >= 0
 };
 
 struct MaterialSet {

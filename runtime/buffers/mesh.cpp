@@ -63,8 +63,14 @@ Json describe_column(const Column& c) {
     part.update(to_json(measure(c, k)));
     parts.push_back(std::move(part));
   }
-  return {{"name", c.name()}, {"domain", name_of(c.domain())}, {"kind", name_of(c.kind())}, {"width", c.width()},
-          {"rows", c.rows()}, {"space", name_of(c.space())},   {"bytes", c.bytes()},        {"digest", to_hex(h.done())},
+  return {{"name", c.name()},
+          {"domain", name_of(c.domain())},
+          {"kind", name_of(c.kind())},
+          {"width", c.width()},
+          {"rows", c.rows()},
+          {"space", name_of(c.space())},
+          {"bytes", c.bytes()},
+          {"digest", to_hex(h.done())},
           {"components", std::move(parts)}};
 }
 
@@ -75,14 +81,18 @@ std::string wrong_type(const Column& c, const Mesh& m) {
   const auto be = [&](bool right, std::string_view wanted) {
     return right ? std::string() : fmt::format("column {} must be {}", c.name(), wanted);
   };
-  if (c.name() == "triangle") return be(c.domain() == Domain::face && c.holds<glm::uvec3>(), "u32 x 3 on faces");
+  if (c.name() == "triangle")
+    return be(c.domain() == Domain::face && c.holds<glm::uvec3>(), "u32 x 3 on faces");
   if (c.name() == "position") {
     const int width = m.space() == Space::clip || m.space() == Space::screen ? 4 : 3;
-    return be(c.domain() == Domain::vertex && real && c.width() == width, fmt::format("real x {} on vertices", width));
+    return be(c.domain() == Domain::vertex && real && c.width() == width,
+              fmt::format("real x {} on vertices", width));
   }
-  if (c.name() == "normal") return be(on_surface && real && c.width() == 3, "real x 3 on vertices or corners");
+  if (c.name() == "normal")
+    return be(on_surface && real && c.width() == 3, "real x 3 on vertices or corners");
   if (c.name() == "uv") return be(on_surface && real && c.width() == 2, "real x 2 on vertices or corners");
-  if (c.name() == "world") return be(c.domain() == Domain::vertex && real && c.width() == 3, "real x 3 on vertices");
+  if (c.name() == "world")
+    return be(c.domain() == Domain::vertex && real && c.width() == 3, "real x 3 on vertices");
   if (c.name() == "origin" || c.name() == "material")
     return be(c.domain() == Domain::face && c.holds<std::uint32_t>(), "u32 on faces");
   return {};
@@ -137,7 +147,8 @@ struct Ops {
     for (const auto& c : m.columns) {
       total = std::max(total, c->rows());
       for (int k = 0; k < c->width(); ++k) {
-        const std::string suffix = c->width() == 1 ? "" : fmt::format(".{}", component_names[static_cast<std::size_t>(k)]);
+        const std::string suffix =
+            c->width() == 1 ? "" : fmt::format(".{}", component_names[static_cast<std::size_t>(k)]);
         names.push_back(fmt::format("{} {}{}", name_of(c->domain()), c->name(), suffix));
       }
     }
@@ -189,9 +200,12 @@ std::span<const glm::uvec3> Mesh::triangles() const { return at("triangle").valu
 
 Mesh Mesh::with(Ref<Column> column) const {
   Mesh m = *this;
-  const auto same = std::find_if(m.columns.begin(), m.columns.end(), [&](const auto& c) { return c->name() == column->name(); });
-  if (same != m.columns.end()) *same = std::move(column);
-  else m.columns.push_back(std::move(column));
+  const auto same = std::find_if(m.columns.begin(), m.columns.end(),
+                                 [&](const auto& c) { return c->name() == column->name(); });
+  if (same != m.columns.end())
+    *same = std::move(column);
+  else
+    m.columns.push_back(std::move(column));
   return m;
 }
 
@@ -204,7 +218,8 @@ std::string Mesh::validate() const {
   for (const auto& c : columns) {
     if (std::string wrong = wrong_type(*c, *this); !wrong.empty()) return wrong;
     if (const std::size_t rows = elements(*this, c->domain()); c->rows() != rows)
-      return fmt::format("column {} has {} rows for {} of domain {}", c->name(), c->rows(), rows, name_of(c->domain()));
+      return fmt::format("column {} has {} rows for {} of domain {}", c->name(), c->rows(), rows,
+                         name_of(c->domain()));
   }
   const std::size_t n = vertices();
   const auto faces = triangles();
@@ -222,8 +237,8 @@ std::string Mesh::validate() const {
 
 template <>
 const BufferType& buffer_type<Mesh>() {
-  static const BufferType type =
-      make_buffer_type<Mesh, Ops>("mesh", "Triangles with columns of attributes over vertices, corners and faces.", "#4f9da6");
+  static const BufferType type = make_buffer_type<Mesh, Ops>(
+      "mesh", "Triangles with columns of attributes over vertices, corners and faces.", "#4f9da6");
   return type;
 }
 

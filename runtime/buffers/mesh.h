@@ -27,9 +27,9 @@ namespace frustum {
 // Invariants (validate): every column has as many rows as its domain has elements; indices < vertices.
 struct Mesh {
   std::vector<Ref<Column>> columns;
-  Ref<MaterialSet> materials;         // null: one default material
-  Ref<Camera> camera;                 // from project.view on: the camera whose spaces the positions are in
-  std::optional<bool> closed;         // every edge has two faces, of opposite direction; unset: not known
+  Ref<MaterialSet> materials;  // null: one default material
+  Ref<Camera> camera;          // from project.view on: the camera whose spaces the positions are in
+  std::optional<bool> closed;  // every edge has two faces, of opposite direction; unset: not known
 
   const Column* find(std::string_view name) const;
   Ref<Column> share(std::string_view name) const;  // null where there is none

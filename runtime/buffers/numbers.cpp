@@ -1,8 +1,8 @@
 #include "runtime/buffers/numbers.h"
 
-#include <nlohmann/json.hpp>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -20,8 +20,9 @@ using Bits = std::conditional_t<sizeof(R) == 4, std::int32_t, std::int64_t>;
 template <class R>
 constexpr Bits<R> largest_finite = std::bit_cast<Bits<R>>(std::numeric_limits<R>::max());
 
-// 256 values at once: the sign bit of `over` is set where one of them exceeds the largest finite magnitude. Subtraction of two
-// non-negative integers does not overflow; and, sub, or exist in every vector instruction set.
+// 256 values at once: the sign bit of `over` is set where one of them exceeds the largest finite magnitude.
+// Subtraction of two non-negative integers does not overflow; and, sub, or exist in every vector
+// instruction set.
 template <class R>
 bool all_finite(const R* v) {
   Bits<R> over = 0;
@@ -34,9 +35,12 @@ template <class R>
 void count_each(const R* values, std::size_t begin, std::size_t end, Scan& out) {
   for (std::size_t i = begin; i < end; ++i) {
     if (std::isfinite(values[i])) continue;
-    if (std::isnan(values[i])) ++out.nan;
-    else if (values[i] > 0) ++out.positive_infinity;
-    else ++out.negative_infinity;
+    if (std::isnan(values[i]))
+      ++out.nan;
+    else if (values[i] > 0)
+      ++out.positive_infinity;
+    else
+      ++out.negative_infinity;
     if (!out.first) out.first = i;
   }
 }
@@ -128,9 +132,8 @@ Scan scan(std::span<const double> v) { return scan_all(v); }
 Health health_of(std::string_view owner, std::span<const std::pair<std::string_view, double>> values) {
   std::vector<double> numbers;
   for (const auto& [name, v] : values) numbers.push_back(v);
-  return to_health(scan(std::span<const double>(numbers)), numbers.size(), [&](std::size_t i) {
-    return std::string(owner) + ", " + std::string(values[i].first);
-  });
+  return to_health(scan(std::span<const double>(numbers)), numbers.size(),
+                   [&](std::size_t i) { return std::string(owner) + ", " + std::string(values[i].first); });
 }
 
 Statistics measure(std::vector<float> values) { return measure_all(std::move(values)); }

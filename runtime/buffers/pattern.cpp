@@ -9,7 +9,9 @@ namespace frustum {
 namespace {
 
 struct Ops {
-  static std::size_t bytes(const SamplePattern& p) { return sizeof p + (p.x.size() + p.y.size()) * sizeof p.x[0]; }
+  static std::size_t bytes(const SamplePattern& p) {
+    return sizeof p + (p.x.size() + p.y.size()) * sizeof p.x[0];
+  }
   static void hash(const SamplePattern& p, Hasher& h) {
     h.value(p.samples).value(p.period).span<std::uint16_t>(p.x).span<std::uint16_t>(p.y);
   }
@@ -18,9 +20,11 @@ struct Ops {
   // One row a sample of the repeating block, in pixels.
   static Json table(const SamplePattern& p, std::size_t first, std::size_t count) {
     const auto period = static_cast<std::size_t>(p.period);
-    return json_table({"sample", "pixel x", "pixel y", "offset x", "offset y"}, p.x.size(), first, count, [&](std::size_t i) {
-      return Json{i / period / period, i % period, i / period % period, p.x[i] / 4096.0, p.y[i] / 4096.0};
-    });
+    return json_table(
+        {"sample", "pixel x", "pixel y", "offset x", "offset y"}, p.x.size(), first, count,
+        [&](std::size_t i) {
+          return Json{i / period / period, i % period, i / period % period, p.x[i] / 4096.0, p.y[i] / 4096.0};
+        });
   }
 };
 
@@ -28,8 +32,8 @@ struct Ops {
 
 template <>
 const BufferType& buffer_type<SamplePattern>() {
-  static const BufferType type =
-      make_buffer_type<SamplePattern, Ops>("sample_pattern", "Where the samples of each pixel lie.", "#b58bb0");
+  static const BufferType type = make_buffer_type<SamplePattern, Ops>(
+      "sample_pattern", "Where the samples of each pixel lie.", "#b58bb0");
   return type;
 }
 

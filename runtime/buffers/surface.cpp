@@ -24,10 +24,12 @@ struct Ops {
     h.value(s.space).span(numbers(s)).span(std::span<const std::array<std::uint32_t, 16>>(s.patches));
   }
   static Health health(const Surface& s) {
-    return to_health(scan(numbers(s)), numbers(s).size(), [](std::size_t i) { return fmt::format("control point {}", i / 3); });
+    return to_health(scan(numbers(s)), numbers(s).size(),
+                     [](std::size_t i) { return fmt::format("control point {}", i / 3); });
   }
   static Json summary(const Surface& s) {
-    Json out = {{"patches", s.patches.size()}, {"control_points", s.points.size()}, {"space", name_of(s.space)}};
+    Json out = {
+        {"patches", s.patches.size()}, {"control_points", s.points.size()}, {"space", name_of(s.space)}};
     Json parts = Json::array();
     for (int k = 0; k < 3; ++k) {
       std::vector<double> values;
@@ -50,8 +52,8 @@ struct Ops {
 
 template <>
 const BufferType& buffer_type<Surface>() {
-  static const BufferType type =
-      make_buffer_type<Surface, Ops>("surface", "Bicubic Bezier patches over shared control points.", "#5a8fc7");
+  static const BufferType type = make_buffer_type<Surface, Ops>(
+      "surface", "Bicubic Bezier patches over shared control points.", "#5a8fc7");
   return type;
 }
 

@@ -12,9 +12,9 @@ namespace {
 Json json(const glm::dvec3& v) { return {json_number(v.x), json_number(v.y), json_number(v.z)}; }
 
 Health health_of(const Checker& c) {
-  const std::pair<std::string_view, double> values[] = {{"scale", c.scale},  {"even", c.even.x}, {"even", c.even.y},
-                                                        {"even", c.even.z}, {"odd", c.odd.x},   {"odd", c.odd.y},
-                                                        {"odd", c.odd.z}};
+  const std::pair<std::string_view, double> values[] = {
+      {"scale", c.scale}, {"even", c.even.x}, {"even", c.even.y}, {"even", c.even.z},
+      {"odd", c.odd.x},   {"odd", c.odd.y},   {"odd", c.odd.z}};
   return frustum::health_of("checker", values);
 }
 
@@ -31,7 +31,8 @@ Health health_of(const MipPyramid& p) {
 }
 
 Json summary_of(const Checker& c) {
-  return {{"source", "checker"}, {"scale", json_number(c.scale)}, {"even", json(c.even)}, {"odd", json(c.odd)}};
+  return {
+      {"source", "checker"}, {"scale", json_number(c.scale)}, {"even", json(c.even)}, {"odd", json(c.odd)}};
 }
 
 Json summary_of(const MipPyramid& p) {
@@ -86,7 +87,8 @@ struct Ops {
 
 template <>
 const BufferType& buffer_type<Texture>() {
-  static const BufferType type = make_buffer_type<Texture, Ops>("texture", "A colour for every u and v.", "#c78f3f");
+  static const BufferType type =
+      make_buffer_type<Texture, Ops>("texture", "A colour for every u and v.", "#c78f3f");
   return type;
 }
 

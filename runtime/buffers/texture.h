@@ -15,7 +15,8 @@ namespace frustum {
 
 enum class Wrap : std::uint8_t { repeat, clamp, mirror };
 constexpr auto choices(Wrap) {
-  return std::array{std::pair{Wrap::repeat, "repeat"}, std::pair{Wrap::clamp, "clamp"}, std::pair{Wrap::mirror, "mirror"}};
+  return std::array{std::pair{Wrap::repeat, "repeat"}, std::pair{Wrap::clamp, "clamp"},
+                    std::pair{Wrap::mirror, "mirror"}};
 }
 
 // Squares of side 1/scale in u and v; `even` where floor(scale u) + floor(scale v) is even.
@@ -24,8 +25,8 @@ struct Checker {
   glm::dvec3 even{1}, odd{0};
 };
 
-// Level 0 is the image; each further level halves both sides (rounding down, at least 1) by exact area averages.
-// Texel rows are RGBA f32, linear light, premultiplied; row 0 is v = 1 (the top of the picture).
+// Level 0 is the image; each further level halves both sides (rounding down, at least 1) by exact area
+// averages. Texel rows are RGBA f32, linear light, premultiplied; row 0 is v = 1 (the top of the picture).
 struct MipPyramid {
   struct Level {
     int width = 0, height = 0;

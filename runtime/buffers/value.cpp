@@ -94,12 +94,15 @@ struct TableOps {
   }
   static Json table(const Table& t, std::size_t first, std::size_t count) {
     Json names = Json::array();
-    for (const auto& c : t.columns) names.push_back(c.unit.empty() ? c.name : fmt::format("{} [{}]", c.name, c.unit));
+    for (const auto& c : t.columns)
+      names.push_back(c.unit.empty() ? c.name : fmt::format("{} [{}]", c.name, c.unit));
     return json_table(std::move(names), t.rows(), first, count, [&](std::size_t i) {
       Json row = Json::array();
       for (const auto& c : t.columns) {
-        if (i < c.texts.size()) row.push_back(c.texts[i]);
-        else row.push_back(i < c.numbers.size() ? json_number(c.numbers[i]) : Json());
+        if (i < c.texts.size())
+          row.push_back(c.texts[i]);
+        else
+          row.push_back(i < c.numbers.size() ? json_number(c.numbers[i]) : Json());
       }
       return row;
     });
@@ -119,13 +122,14 @@ const BufferType& buffer_type<Number>() {
 }
 template <>
 const BufferType& buffer_type<Matrix>() {
-  static const BufferType type =
-      make_buffer_type<Matrix, MatrixOps>("matrix", "Four rows of four numbers, acting on column vectors.", "#a6806f");
+  static const BufferType type = make_buffer_type<Matrix, MatrixOps>(
+      "matrix", "Four rows of four numbers, acting on column vectors.", "#a6806f");
   return type;
 }
 template <>
 const BufferType& buffer_type<Table>() {
-  static const BufferType type = make_buffer_type<Table, TableOps>("table", "Named columns of numbers or texts.", "#86a38f");
+  static const BufferType type =
+      make_buffer_type<Table, TableOps>("table", "Named columns of numbers or texts.", "#86a38f");
   return type;
 }
 

@@ -60,7 +60,9 @@ ocio::ColorSpaceRcPtr make_space(const ColorSpace& space) {
     if (alias != ocio::ROLE_SCENE_LINEAR) out->addAlias(std::string(alias).c_str());  // that one is a role
   out->setBitDepth(ocio::BIT_DEPTH_F32);
   out->setIsData(space.data);
-  out->setEncoding(space.data ? "data" : space.curve == kernels::Curve::linear ? "scene-linear" : "sdr-video");
+  out->setEncoding(space.data                              ? "data"
+                   : space.curve == kernels::Curve::linear ? "scene-linear"
+                                                           : "sdr-video");
   auto group = ocio::GroupTransform::Create();
   if (space.curve != kernels::Curve::linear) group->appendTransform(decode_transform(space.curve));
   if (!space.primaries.empty()) {
@@ -109,24 +111,27 @@ ocio::ConstConfigRcPtr read_config(const std::string& path, const std::string& n
   std::error_code error;
   const auto kind = std::filesystem::status(path, error).type();
   if (kind != std::filesystem::file_type::regular)
-    throw WorldError("cannot_read_file",
-                     fmt::format("cannot read {}: {}", name, error ? error.message() : "it is not a regular file"));
+    throw WorldError("cannot_read_file", fmt::format("cannot read {}: {}", name,
+                                                     error ? error.message() : "it is not a regular file"));
   try {
     auto config = ocio::Config::CreateFromFile(path.c_str());
     config->validate();
     return config;
   } catch (const std::exception& e) {
-    throw NodeError("malformed_file", fmt::format("{} is not an OpenColorIO configuration: {}", name, e.what()));
+    throw NodeError("malformed_file",
+                    fmt::format("{} is not an OpenColorIO configuration: {}", name, e.what()));
   }
 }
 
 std::string lower(std::string s) {
-  std::transform(s.begin(), s.end(), s.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  std::transform(s.begin(), s.end(), s.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   return s;
 }
 
 ColorConversion identity_conversion() {
-  return ColorConversion(std::make_shared<const ColorConversion::Impl>(ColorConversion::Impl{true, true, {}, {}}));
+  return ColorConversion(
+      std::make_shared<const ColorConversion::Impl>(ColorConversion::Impl{true, true, {}, {}}));
 }
 
 ColorConversion exact_conversion(const ColorSpace& from, const ColorSpace& to) {
@@ -153,7 +158,8 @@ void apply_packed(const ocio::CPUProcessor& processor, R* r, R* g, R* b, std::si
       // Lookup tables turn NaN into a number; here it stays what it is.
       const bool lost = std::isnan(r[at + i]) || std::isnan(g[at + i]) || std::isnan(b[at + i]);
       const R nan = std::numeric_limits<R>::quiet_NaN();
-      r[at + i] = lost ? nan : static_cast<R>(packed[4 * i]), g[at + i] = lost ? nan : static_cast<R>(packed[4 * i + 1]);
+      r[at + i] = lost ? nan : static_cast<R>(packed[4 * i]),
+             g[at + i] = lost ? nan : static_cast<R>(packed[4 * i + 1]);
       b[at + i] = lost ? nan : static_cast<R>(packed[4 * i + 2]);
     }
   }
@@ -169,14 +175,18 @@ bool ColorConversion::foreign() const { return impl_->processor != nullptr; }
 
 void ColorConversion::apply(float* r, float* g, float* b, std::size_t n) const {
   if (impl_->identity) return;
-  if (impl_->processor) apply_packed(*impl_->processor, r, g, b, n);
-  else kernels::simd::convert_colors(impl_->map, r, g, b, n);
+  if (impl_->processor)
+    apply_packed(*impl_->processor, r, g, b, n);
+  else
+    kernels::simd::convert_colors(impl_->map, r, g, b, n);
 }
 
 void ColorConversion::apply(double* r, double* g, double* b, std::size_t n) const {
   if (impl_->identity) return;
-  if (impl_->processor) apply_packed(*impl_->processor, r, g, b, n);
-  else kernels::convert_colors(impl_->map, r, g, b, n);
+  if (impl_->processor)
+    apply_packed(*impl_->processor, r, g, b, n);
+  else
+    kernels::convert_colors(impl_->map, r, g, b, n);
 }
 
 // ----- ColorConfig
@@ -228,7 +238,8 @@ std::vector<std::string> ColorConfig::names() const {
   if (impl_->embedded())
     for (const ColorSpace& s : embedded_spaces()) all.emplace_back(s.name);
   else
-    for (int i = 0; i < impl_->config->getNumColorSpaces(); ++i) all.emplace_back(impl_->config->getColorSpaceNameByIndex(i));
+    for (int i = 0; i < impl_->config->getNumColorSpaces(); ++i)
+      all.emplace_back(impl_->config->getColorSpaceNameByIndex(i));
   return all;
 }
 
@@ -246,9 +257,12 @@ std::vector<std::string> ColorConfig::aliases() const {
   return all;
 }
 
-ColorConversion ColorConfig::conversion(std::string_view from, std::string_view to, ColorEngine engine) const {
+ColorConversion ColorConfig::conversion(std::string_view from, std::string_view to,
+                                        ColorEngine engine) const {
   const std::string a = resolve(from), b = resolve(to);
-  const auto own = [&](const std::string& name) { return impl_->config && !listed_name(impl_->config, name).empty(); };
+  const auto own = [&](const std::string& name) {
+    return impl_->config && !listed_name(impl_->config, name).empty();
+  };
   const bool own_a = own(a), own_b = own(b);
   if (!own_a && !own_b) {
     const ColorSpace &s = *find_embedded(a), &t = *find_embedded(b);
@@ -258,14 +272,17 @@ ColorConversion ColorConfig::conversion(std::string_view from, std::string_view 
   const ocio::ConstConfigRcPtr &config_a = own_a ? impl_->config : embedded_config(),
                                &config_b = own_b ? impl_->config : embedded_config();
   try {
-    const auto processor = own_a == own_b ? config_a->getProcessor(a.c_str(), b.c_str())
-                                          : ocio::Config::GetProcessorFromConfigs(config_a, a.c_str(), config_b, b.c_str());
+    const auto processor =
+        own_a == own_b ? config_a->getProcessor(a.c_str(), b.c_str())
+                       : ocio::Config::GetProcessorFromConfigs(config_a, a.c_str(), config_b, b.c_str());
     if (processor->isNoOp()) return identity_conversion();
-    auto cpu = processor->getOptimizedCPUProcessor(ocio::BIT_DEPTH_F32, ocio::BIT_DEPTH_F32, ocio::OPTIMIZATION_LOSSLESS);
-    return ColorConversion(
-        std::make_shared<const ColorConversion::Impl>(ColorConversion::Impl{false, false, {}, std::move(cpu)}));
+    auto cpu = processor->getOptimizedCPUProcessor(ocio::BIT_DEPTH_F32, ocio::BIT_DEPTH_F32,
+                                                   ocio::OPTIMIZATION_LOSSLESS);
+    return ColorConversion(std::make_shared<const ColorConversion::Impl>(
+        ColorConversion::Impl{false, false, {}, std::move(cpu)}));
   } catch (const std::exception& e) {
-    throw NodeError("no_conversion", fmt::format("no way from colour space '{}' to '{}': {}", from, to, e.what()));
+    throw NodeError("no_conversion",
+                    fmt::format("no way from colour space '{}' to '{}': {}", from, to, e.what()));
   }
 }
 

@@ -12,7 +12,8 @@ using Vector3 = std::array<double, 3>;
 
 bool same_text(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return lower(x) == lower(y); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return lower(x) == lower(y); });
 }
 
 Vector3 times(const Matrix3& m, const Vector3& v) {
@@ -54,9 +55,12 @@ Matrix3 product(const Matrix3& a, const Matrix3& b) {
 }
 
 Matrix3 inverse(const Matrix3& m) {
-  const auto minor = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) { return m[a] * m[d] - m[b] * m[c]; };
-  const Matrix3 adjugate{minor(4, 5, 7, 8), -minor(1, 2, 7, 8), minor(1, 2, 4, 5),  -minor(3, 5, 6, 8), minor(0, 2, 6, 8),
-                         -minor(0, 2, 3, 5), minor(3, 4, 6, 7), -minor(0, 1, 6, 7), minor(0, 1, 3, 4)};
+  const auto minor = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
+    return m[a] * m[d] - m[b] * m[c];
+  };
+  const Matrix3 adjugate{minor(4, 5, 7, 8),  -minor(1, 2, 7, 8), minor(1, 2, 4, 5),
+                         -minor(3, 5, 6, 8), minor(0, 2, 6, 8),  -minor(0, 2, 3, 5),
+                         minor(3, 4, 6, 7),  -minor(0, 1, 6, 7), minor(0, 1, 3, 4)};
   const double det = m[0] * adjugate[0] + m[1] * adjugate[3] + m[2] * adjugate[6];
   Matrix3 out{};
   for (std::size_t i = 0; i < 9; ++i) out[i] = adjugate[i] / det;
@@ -66,24 +70,62 @@ Matrix3 inverse(const Matrix3& m) {
 std::span<const ColorSpace> embedded_spaces() {
   static const std::vector<ColorSpace> spaces{
       {"xyz_d65", "CIE XYZ 1931, white D65.", "", Curve::linear, {"cie_xyz_d65", "xyz", "CIE-XYZ-D65"}},
-      {"lin_rec709", "Linear light, Rec.709 primaries.", "lin_rec709", Curve::linear,
-       {"linear", "lin_srgb", "linear_rec709", "linear_srgb", "scene_linear", "lin_rec709_srgb", "Linear Rec.709 (sRGB)"}},
-      {"srgb", "sRGB, IEC 61966-2-1.", "lin_rec709", Curve::srgb,
+      {"lin_rec709",
+       "Linear light, Rec.709 primaries.",
+       "lin_rec709",
+       Curve::linear,
+       {"linear", "lin_srgb", "linear_rec709", "linear_srgb", "scene_linear", "lin_rec709_srgb",
+        "Linear Rec.709 (sRGB)"}},
+      {"srgb",
+       "sRGB, IEC 61966-2-1.",
+       "lin_rec709",
+       Curve::srgb,
        {"sRGB - Texture", "srgb_texture", "srgb_tx", "srgb_rec709", "sRGB Encoded Rec.709 (sRGB)"}},
-      {"rec709", "Rec.709 primaries, BT.709 camera curve.", "lin_rec709", Curve::rec709, {"Rec.709", "bt709", "bt.709"}},
-      {"lin_rec2020", "Linear light, Rec.2020 primaries.", "lin_rec2020", Curve::linear,
+      {"rec709",
+       "Rec.709 primaries, BT.709 camera curve.",
+       "lin_rec709",
+       Curve::rec709,
+       {"Rec.709", "bt709", "bt.709"}},
+      {"lin_rec2020",
+       "Linear light, Rec.2020 primaries.",
+       "lin_rec2020",
+       Curve::linear,
        {"linear_rec2020", "lin_bt2020", "Linear Rec.2020"}},
-      {"rec2020", "Rec.2020 primaries, BT.2020 camera curve.", "lin_rec2020", Curve::rec709, {"Rec.2020", "bt2020", "bt.2020"}},
-      {"lin_p3d65", "Linear light, P3 primaries, white D65.", "lin_p3d65", Curve::linear,
+      {"rec2020",
+       "Rec.2020 primaries, BT.2020 camera curve.",
+       "lin_rec2020",
+       Curve::rec709,
+       {"Rec.2020", "bt2020", "bt.2020"}},
+      {"lin_p3d65",
+       "Linear light, P3 primaries, white D65.",
+       "lin_p3d65",
+       Curve::linear,
        {"linear_p3", "lin_display_p3", "linear_display_p3", "linear_p3d65", "Linear P3-D65"}},
-      {"display_p3", "Display P3: P3 primaries, white D65, sRGB curve.", "lin_p3d65", Curve::srgb,
+      {"display_p3",
+       "Display P3: P3 primaries, white D65, sRGB curve.",
+       "lin_p3d65",
+       Curve::srgb,
        {"Display P3", "p3", "srgb_p3d65", "srgb_display_p3"}},
-      {"lin_adobergb", "Linear light, Adobe RGB (1998) primaries.", "lin_adobergb", Curve::linear,
+      {"lin_adobergb",
+       "Linear light, Adobe RGB (1998) primaries.",
+       "lin_adobergb",
+       Curve::linear,
        {"linear_adobe_rgb", "lin_adobe_rgb", "linear_adobergb", "Linear AdobeRGB"}},
-      {"adobe_rgb", "Adobe RGB (1998).", "lin_adobergb", Curve::adobe_rgb, {"AdobeRGB", "Adobe RGB", "Adobe RGB (1998)"}},
-      {"lin_ap0", "ACES2065-1: linear light, AP0 primaries.", "lin_ap0", Curve::linear,
+      {"adobe_rgb",
+       "Adobe RGB (1998).",
+       "lin_adobergb",
+       Curve::adobe_rgb,
+       {"AdobeRGB", "Adobe RGB", "Adobe RGB (1998)"}},
+      {"lin_ap0",
+       "ACES2065-1: linear light, AP0 primaries.",
+       "lin_ap0",
+       Curve::linear,
        {"ACES2065-1", "aces2065_1", "ap0", "aces", "lin_ap0_scene"}},
-      {"lin_ap1", "ACEScg: linear light, AP1 primaries.", "lin_ap1", Curve::linear, {"ACEScg", "ap1", "lin_ap1_scene"}},
+      {"lin_ap1",
+       "ACEScg: linear light, AP1 primaries.",
+       "lin_ap1",
+       Curve::linear,
+       {"ACEScg", "ap1", "lin_ap1_scene"}},
       {"raw", "Data that is no colour.", "", Curve::linear, {"data", "Utility - Raw"}, true},
   };
   return spaces;

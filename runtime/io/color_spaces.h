@@ -24,7 +24,8 @@ const ColorSpace* find_embedded(std::string_view name_or_alias);  // in any case
 
 using Matrix3 = std::array<double, 9>;  // row by row
 
-// Linear values of the space to CIE XYZ relative to D65; Bradford-adapted where the white is another. xyz_d65 gives the identity.
+// Linear values of the space to CIE XYZ relative to D65; Bradford-adapted where the white is another.
+// xyz_d65 gives the identity.
 Matrix3 xyz_from_linear(const ColorSpace&);
 Matrix3 product(const Matrix3& a, const Matrix3& b);
 Matrix3 inverse(const Matrix3&);  // of one that has an inverse

@@ -57,7 +57,8 @@ FileBytes::FileBytes(const FilePath& path) {
   std::atomic<int> error{0};
   tbb::parallel_for(std::size_t{0}, (size_ + block - 1) / block, [&](std::size_t i) {
     const std::size_t at = i * block;
-    if (const int e = read_block(file.fd, data_.get() + at, std::min(block, size_ - at), at); e != 0) error = e;
+    if (const int e = read_block(file.fd, data_.get() + at, std::min(block, size_ - at), at); e != 0)
+      error = e;
   });
   if (error != 0) cannot_read(path, std::strerror(error));
 }

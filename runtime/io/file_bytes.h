@@ -10,9 +10,10 @@
 
 namespace frustum {
 
-// Reads a regular file whole. It is copied and not mapped: a mapped file that shrinks meanwhile would end the process with
-// SIGBUS, and a copy in parallel blocks costs some 15 ms per 100 MB.
-// Throws NodeError("no_file") where the path is empty, WorldError("cannot_read_file") where the file cannot be read.
+// Reads a regular file whole. It is copied and not mapped: a mapped file that shrinks meanwhile would end
+// the process with SIGBUS, and a copy in parallel blocks costs some 15 ms per 100 MB.
+// Throws NodeError("no_file") where the path is empty, WorldError("cannot_read_file") where the file cannot
+// be read.
 class FileBytes {
  public:
   explicit FileBytes(const FilePath& path);

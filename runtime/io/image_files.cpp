@@ -16,11 +16,14 @@ const ImageModule& load() {
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
   const auto path = program.parent_path().parent_path() / "lib" / "frustum" / image_module_file;
-  // Never closed: buffers and exceptions made by its code outlive every call. Local symbols: its copies of ours stay its own.
+  // Never closed: buffers and exceptions made by its code outlive every call. Local symbols: its copies of
+  // ours stay its own.
   void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (module == nullptr) throw WorldError("no_image_module", fmt::format("cannot load the image library: {}", dlerror()));
+  if (module == nullptr)
+    throw WorldError("no_image_module", fmt::format("cannot load the image library: {}", dlerror()));
   const auto entry = reinterpret_cast<ImageModuleEntry>(dlsym(module, image_module_symbol));
-  if (entry == nullptr) throw WorldError("no_image_module", fmt::format("{} is not frustum's image library", path.string()));
+  if (entry == nullptr)
+    throw WorldError("no_image_module", fmt::format("{} is not frustum's image library", path.string()));
   return *entry();
 }
 

@@ -11,6 +11,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
 
 namespace frustum {
 namespace {
@@ -22,7 +25,8 @@ using obj::Corner;
 template <class R>
 class Assembler {
  public:
-  Assembler(std::string_view text, const FilePath& file, Context& ctx) : text_(text), file_(file), ctx_(ctx) {}
+  Assembler(std::string_view text, const FilePath& file, Context& ctx)
+      : text_(text), file_(file), ctx_(ctx) {}
 
   Mesh run() {
     parse();
@@ -34,8 +38,10 @@ class Assembler {
     Mesh m;
     m.columns = {triangles(), gather()};
     m.columns.push_back(normal_column());
-    if (const Ref<Column> uv = uv_column(); uv_missing_ < vertex_count()) m.columns.push_back(uv);
-    else uv_missing_ = 0;
+    if (const Ref<Column> uv = uv_column(); uv_missing_ < vertex_count())
+      m.columns.push_back(uv);
+    else
+      uv_missing_ = 0;
     add_materials(m);
     report();
     return m;
@@ -94,7 +100,9 @@ class Assembler {
         if (k % 3 == 1) corner.vt += static_cast<std::int32_t>(bases_[i].vt);
         if (k % 3 == 2) corner.vn += static_cast<std::int32_t>(bases_[i].vn);
       }
-      const auto inside = [](std::int32_t index, std::size_t n) { return index >= 0 && static_cast<std::size_t>(index) < n; };
+      const auto inside = [](std::int32_t index, std::size_t n) {
+        return index >= 0 && static_cast<std::size_t>(index) < n;
+      };
       for (std::size_t k = 0; k < c.corners.size() && wrong[i] == ~std::size_t{0}; ++k) {
         const Corner& corner = c.corners[k];
         if (!inside(corner.v, total_.v) || (corner.vt != absent && !inside(corner.vt, total_.vt)) ||
@@ -111,7 +119,8 @@ class Assembler {
     std::size_t face = 0, end = 0;
     while ((end += c.sizes[face]) <= corner) ++face;
     fail(chunk, obj::find_face(c.text, face),
-         fmt::format("a corner names what is not there: the file has {} v, {} vt and {} vn", total_.v, total_.vt, total_.vn));
+         fmt::format("a corner names what is not there: the file has {} v, {} vt and {} vn", total_.v,
+                     total_.vt, total_.vn));
   }
 
   void flatten() {
@@ -122,7 +131,8 @@ class Assembler {
         positions_[bases_[i].v + k] = {c.positions[3 * k], c.positions[3 * k + 1], c.positions[3 * k + 2]};
       for (std::size_t k = 0; k < c.normals.size() / 3; ++k)
         normals_[bases_[i].vn + k] = {c.normals[3 * k], c.normals[3 * k + 1], c.normals[3 * k + 2]};
-      for (std::size_t k = 0; k < c.uvs.size() / 2; ++k) uvs_[bases_[i].vt + k] = {c.uvs[2 * k], c.uvs[2 * k + 1]};
+      for (std::size_t k = 0; k < c.uvs.size() / 2; ++k)
+        uvs_[bases_[i].vt + k] = {c.uvs[2 * k], c.uvs[2 * k + 1]};
       c.positions = {}, c.normals = {}, c.uvs = {};
     });
   }
@@ -140,7 +150,8 @@ class Assembler {
       const Corner* face = c.corners.data();
       for (const std::uint32_t n : c.sizes) {
         polygon.clear(), cut.clear();
-        for (std::uint32_t k = 0; k < n; ++k) polygon.emplace_back(positions_[static_cast<std::size_t>(face[k].v)]);
+        for (std::uint32_t k = 0; k < n; ++k)
+          polygon.emplace_back(positions_[static_cast<std::size_t>(face[k].v)]);
         if (!triangulate(polygon, cut)) ++fans[i];
         for (const auto& t : cut) out.insert(out.end(), {face[t[0]], face[t[1]], face[t[2]]});
         face += n;
@@ -156,7 +167,8 @@ class Assembler {
     std::uint32_t next = 0;  // in extra_, from 1; 0 ends the list
   };
 
-  // Numbers the distinct (vt, vn) at each position; a corner's vt becomes that number. Serial: about 4 ns a corner.
+  // Numbers the distinct (vt, vn) at each position; a corner's vt becomes that number. Serial: about 4 ns a
+  // corner.
   void weld() {
     first_.resize(total_.v);
     first_vertex_.assign(total_.v + 1, 0);
@@ -199,7 +211,8 @@ class Assembler {
         return first_vertex_[static_cast<std::size_t>(k.v)] + static_cast<std::uint32_t>(k.vt);
       };
       for (std::size_t t = 0; 3 * t < corners.size(); ++t)
-        out[bases_[i].triangles + t] = {vertex(corners[3 * t]), vertex(corners[3 * t + 1]), vertex(corners[3 * t + 2])};
+        out[bases_[i].triangles + t] = {vertex(corners[3 * t]), vertex(corners[3 * t + 1]),
+                                        vertex(corners[3 * t + 2])};
     });
     return column;
   }
@@ -237,7 +250,8 @@ class Assembler {
     return column;
   }
 
-  // The unit vector along n; nothing where it has no length. Scaled first, so that no square overflows or underflows.
+  // The unit vector along n; nothing where it has no length. Scaled first, so that no square overflows or
+  // underflows.
   static std::optional<glm::dvec3> unit(glm::dvec3 n) {
     const double size = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
     if (!(size > 0) || !std::isfinite(size)) return {};
@@ -251,7 +265,8 @@ class Assembler {
     std::atomic<std::uint64_t> missing{0};
     const Vec3 none{0};
     for_vertices([&](std::size_t i, std::size_t, const Variant& k) {
-      const auto n = k.vn == absent ? std::nullopt : unit(glm::dvec3(normals_[static_cast<std::size_t>(k.vn)]));
+      const auto n =
+          k.vn == absent ? std::nullopt : unit(glm::dvec3(normals_[static_cast<std::size_t>(k.vn)]));
       if (!n) ++missing;
       out[i] = n ? Vec3(*n) : none;
     });
@@ -271,7 +286,8 @@ class Assembler {
       for (std::size_t t = 0; t + 2 < c.corners.size(); t += 3) {
         std::size_t v[3];
         for (std::size_t k = 0; k < 3; ++k) v[k] = static_cast<std::size_t>(c.corners[t + k].v);
-        const glm::dvec3 a(positions_[v[0]]), u = glm::dvec3(positions_[v[1]]) - a, w = glm::dvec3(positions_[v[2]]) - a;
+        const glm::dvec3 a(positions_[v[0]]), u = glm::dvec3(positions_[v[1]]) - a,
+                                              w = glm::dvec3(positions_[v[2]]) - a;
         const glm::dvec3 n{u.y * w.z - u.z * w.y, u.z * w.x - u.x * w.z, u.x * w.y - u.y * w.x};
         for (const std::size_t k : v) sums[k] += n;
       }
@@ -280,7 +296,8 @@ class Assembler {
   }
 
   void add_materials(Mesh& m) {
-    const bool any = std::any_of(chunks_.begin(), chunks_.end(), [](const auto& c) { return !c.materials.empty(); });
+    const bool any =
+        std::any_of(chunks_.begin(), chunks_.end(), [](const auto& c) { return !c.materials.empty(); });
     if (!any) return;
     auto set = std::make_shared<MaterialSet>();
     std::map<std::string_view, std::uint32_t> numbers;
@@ -319,7 +336,8 @@ class Assembler {
     const auto warn = [&](std::uint64_t n, const char* code, std::string_view what) {
       if (n != 0) ctx_.warn(code, fmt::format("{}: {} {}", file_.written, n, what));
     };
-    warn(normals_computed_, "normals_computed", "vertices have no normal; it is the area-weighted mean of the faces around");
+    warn(normals_computed_, "normals_computed",
+         "vertices have no normal; it is the area-weighted mean of the faces around");
     warn(uv_missing_, "uv_missing", "vertices have no texture coordinates; they are 0, 0");
     warn(fans_, "polygon_fan", "polygons cross themselves or have no area; they became fans");
     if (!skipped.empty())

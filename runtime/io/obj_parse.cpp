@@ -38,7 +38,8 @@ class Cursor {
   }
   void skip_line() {
     while (at_ != end_) {
-      const auto* eol = static_cast<const char*>(std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_)));
+      const auto* eol =
+          static_cast<const char*>(std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_)));
       if (eol == nullptr) {
         at_ = end_;
         return;
@@ -77,7 +78,8 @@ class Cursor {
     R value{};
     const auto [stop, error] = std::from_chars(at_, end_, value);
     if (error == std::errc::result_out_of_range) {
-      // Below the smallest subnormal is zero, as in every other reader; above the largest number is no number.
+      // Below the smallest subnormal is zero, as in every other reader; above the largest number is no
+      // number.
       const double wide = std::strtod(std::string(at_, stop).c_str(), nullptr);
       if (!(std::abs(wide) < 1)) return {};
       value = static_cast<R>(wide);
@@ -93,7 +95,8 @@ class Cursor {
     const bool negative = take('-');
     const char* start = at_;
     std::int32_t value = 0;
-    while (at_ != end_ && digit(*at_) && at_ - start < 10) value = static_cast<std::int32_t>(value * 10L + (*at_++ - '0'));
+    while (at_ != end_ && digit(*at_) && at_ - start < 10)
+      value = static_cast<std::int32_t>(value * 10L + (*at_++ - '0'));
     if (at_ == start || at_ - start > 9 || value == 0) return {};
     return negative ? -value : value;
   }
@@ -108,7 +111,8 @@ class Parser {
   Parser(std::string_view lines, Chunk<R>& out) : in_(lines), out_(out) {
     out_.text = lines;
     // Guesses from files in use: a line of numbers has some 30 bytes.
-    out_.positions.reserve(lines.size() / 20), out_.corners.reserve(lines.size() / 12), out_.sizes.reserve(lines.size() / 36);
+    out_.positions.reserve(lines.size() / 20), out_.corners.reserve(lines.size() / 12),
+        out_.sizes.reserve(lines.size() / 36);
   }
 
   void run() {
@@ -150,7 +154,8 @@ class Parser {
     return out;
   }
 
-  // `least` numbers, up to `most` kept (zero where they are left out); more (a weight, a colour) are not looked at.
+  // `least` numbers, up to `most` kept (zero where they are left out); more (a weight, a colour) are not
+  // looked at.
   void numbers(std::vector<R>& to, int least, int most) {
     for (int i = 0; i < most; ++i) {
       in_.skip_blanks();
@@ -159,14 +164,17 @@ class Parser {
         continue;
       }
       const auto n = in_.template number<R>();
-      if (!n) return fail(in_.line_done() ? fmt::format("{} numbers are needed, and there are {}", least, i)
-                                          : fmt::format("'{}' is not a finite number", printable(in_.word())));
+      if (!n)
+        return fail(in_.line_done() ? fmt::format("{} numbers are needed, and there are {}", least, i)
+                                    : fmt::format("'{}' is not a finite number", printable(in_.word())));
       to.push_back(*n);
     }
   }
 
   std::int32_t local_count(int field) const {
-    const std::size_t n = field == 0 ? out_.positions.size() / 3 : field == 1 ? out_.uvs.size() / 2 : out_.normals.size() / 3;
+    const std::size_t n = field == 0   ? out_.positions.size() / 3
+                          : field == 1 ? out_.uvs.size() / 2
+                                       : out_.normals.size() / 3;
     return static_cast<std::int32_t>(n);
   }
 

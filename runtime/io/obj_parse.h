@@ -27,11 +27,13 @@ struct Chunk {
   std::vector<R> uvs;                 // u v ...
   std::vector<Corner> corners;        // of all faces, in order
   std::vector<std::uint32_t> sizes;   // corners of each face, at least 3
-  std::vector<std::size_t> relative;  // 3 x corner + field: fields written as negative numbers, counted from this chunk's start
-  std::vector<std::pair<std::size_t, std::string_view>> materials;  // from this face of the chunk on, this usemtl
-  std::map<std::string_view, std::uint64_t> other;                  // statements that say nothing about triangles, by keyword
-  std::string error;                  // of the first line that is wrong, or empty
-  std::size_t error_at = 0;           // its byte in `text`
+  std::vector<std::size_t>
+      relative;  // 3 x corner + field: fields written as negative numbers, counted from this chunk's start
+  std::vector<std::pair<std::size_t, std::string_view>>
+      materials;                                    // from this face of the chunk on, this usemtl
+  std::map<std::string_view, std::uint64_t> other;  // statements that say nothing about triangles, by keyword
+  std::string error;                                // of the first line that is wrong, or empty
+  std::size_t error_at = 0;                         // its byte in `text`
 };
 
 // Cuts the text at line ends (never inside a line continued by '\') into pieces of about `size` bytes.

@@ -29,7 +29,12 @@ struct Format {
 
 const std::array<Format, 5>& formats() {
   static const std::array<Format, 5> all{{
-      {"exr", {"exr"}, {0, 16, 32}, true, true, true,
+      {"exr",
+       {"exr"},
+       {0, 16, 32},
+       true,
+       true,
+       true,
        {"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}},
       {"png", {"png"}, {8, 16}, false, true, true, {}},
       {"tiff", {"tif", "tiff"}, {16, 8, 32}, false, true, true, {"none", "lzw", "zip", "packbits"}},
@@ -40,7 +45,8 @@ const std::array<Format, 5>& formats() {
 }
 
 std::string lower(std::string s) {
-  std::transform(s.begin(), s.end(), s.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  std::transform(s.begin(), s.end(), s.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   return s;
 }
 
@@ -98,7 +104,9 @@ void plan_color(const SinkRequest& r, const Format& f, int bits, SinkPlan& plan)
   const Frame& frame = r.layers[0].frame;
   for (const Plane& p : frame.planes)
     if (p.kind == PlaneKind::u32) cannot_hold(r, f, fmt::format("holds colours, and '{}' counts", p.name));
-  const auto add = [&](std::string_view plane) { plan.channels.push_back({std::string(plane), 0, *frame.find(plane), type}); };
+  const auto add = [&](std::string_view plane) {
+    plan.channels.push_back({std::string(plane), 0, *frame.find(plane), type});
+  };
   if (frame.planes.size() == 1 && f.grey) {
     plan.channels.push_back({"Y", 0, 0, type});
     return;
@@ -122,9 +130,13 @@ void check_compression(const SinkRequest& r, const Format& f) {
     const auto [end, error] = std::from_chars(first, last, q);
     if (error == std::errc{} && end == last && q >= 1 && q <= 100) return;
   }
-  if (f.name != "jpeg" && std::find(f.compressions.begin(), f.compressions.end(), r.compression) != f.compressions.end()) return;
-  const std::string known = f.compressions.empty() ? "it has no choice" : fmt::format("known: {}", fmt::join(f.compressions, ", "));
-  throw NodeError("unknown_compression", fmt::format("{}: '{}' is no compression of {}; {}", r.path, r.compression, f.name, known));
+  if (f.name != "jpeg" &&
+      std::find(f.compressions.begin(), f.compressions.end(), r.compression) != f.compressions.end())
+    return;
+  const std::string known =
+      f.compressions.empty() ? "it has no choice" : fmt::format("known: {}", fmt::join(f.compressions, ", "));
+  throw NodeError("unknown_compression",
+                  fmt::format("{}: '{}' is no compression of {}; {}", r.path, r.compression, f.name, known));
 }
 
 }  // namespace
@@ -145,17 +157,25 @@ SinkPlan plan_sink(const SinkRequest& r) {
   if (f == nullptr) {
     const std::string ext = std::filesystem::path(r.path).extension().string();
     const auto near = nearest_names(ext.empty() ? ext : ext.substr(1), writable_extensions());
-    throw NodeError("unknown_format", fmt::format("{}: pictures are written as {}{}", r.path, fmt::join(writable_extensions(), ", "),
-                                                  near.empty() ? "" : fmt::format("; did you mean .{}?", near[0])));
+    throw NodeError(
+        "unknown_format",
+        fmt::format("{}: pictures are written as {}{}", r.path, fmt::join(writable_extensions(), ", "),
+                    near.empty() ? "" : fmt::format("; did you mean .{}?", near[0])));
   }
   const int bits = r.bits == 0 ? f->bits[0] : r.bits;
   if (std::find(f->bits.begin(), f->bits.end(), bits) == f->bits.end())
-    throw NodeError("bad_bits", fmt::format("{}: {} has {} bits, not {}", r.path, f->name,
-                                            fmt::join(f->name == "exr" ? std::vector{16, 32} : f->bits, " or "), bits));
+    throw NodeError("bad_bits",
+                    fmt::format("{}: {} has {} bits, not {}", r.path, f->name,
+                                fmt::join(f->name == "exr" ? std::vector{16, 32} : f->bits, " or "), bits));
   check_compression(r, *f);
-  SinkPlan plan{.format = std::string(f->name), .channels = {}, .windows = f->name == "exr", .compression = r.compression};
-  if (f->any_channels) plan_any(r, bits, plan);
-  else plan_color(r, *f, bits, plan);
+  SinkPlan plan{.format = std::string(f->name),
+                .channels = {},
+                .windows = f->name == "exr",
+                .compression = r.compression};
+  if (f->any_channels)
+    plan_any(r, bits, plan);
+  else
+    plan_color(r, *f, bits, plan);
   return plan;
 }
 

@@ -19,15 +19,16 @@ struct SinkChannel {
 struct SinkPlan {
   std::string format;  // "png", "exr", "tiff", "jpeg", "hdr"
   std::vector<SinkChannel> channels;
-  int alpha = -1;         // the channel that is alpha, or -1
+  int alpha = -1;           // the channel that is alpha, or -1
   bool straighten = false;  // premultiplied colours are divided by alpha
-  bool windows = false;   // the format knows data and display windows
+  bool windows = false;     // the format knows data and display windows
   std::string compression;  // empty: the format's usual one
 };
 
 // Throws NodeError as open_image_sink says.
 SinkPlan plan_sink(const SinkRequest&);
 
-std::string_view format_of_extension(std::string_view path);  // "tiff" of "a.TIF"; empty for one that is not written
+std::string_view format_of_extension(
+    std::string_view path);  // "tiff" of "a.TIF"; empty for one that is not written
 
 }  // namespace frustum

@@ -144,8 +144,9 @@ TEST(Mesh, DigestFollowsContentAndNotAddresses) {
   other.closed = false;
   EXPECT_NE(buffer(square()).digest(), buffer(other).digest());
   const glm::vec3 p[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-0.0f, 1, 0}};
-  EXPECT_NE(buffer(square()).digest(),
-            buffer(square().with(Column::make<glm::vec3>("position", Domain::vertex, p, Space::object))).digest());
+  EXPECT_NE(
+      buffer(square()).digest(),
+      buffer(square().with(Column::make<glm::vec3>("position", Domain::vertex, p, Space::object))).digest());
 }
 
 TEST(Mesh, ValidatesItsInvariants) {
@@ -158,7 +159,8 @@ TEST(Mesh, ValidatesItsInvariants) {
   EXPECT_EQ(square().with(Column::make<glm::vec3>("uv", Domain::vertex, 4)).validate(),
             "column uv must be real x 2 on vertices or corners");
   const std::uint32_t ids[] = {0, 1};
-  EXPECT_EQ(square().with(Column::make<std::uint32_t>("material", Domain::face, ids)).validate(), "face 1 names material 1 of 1");
+  EXPECT_EQ(square().with(Column::make<std::uint32_t>("material", Domain::face, ids)).validate(),
+            "face 1 names material 1 of 1");
   EXPECT_EQ(Mesh{}.validate(), "there is no column 'triangle'");
   EXPECT_THROW(Mesh{}.at("position"), NodeError);
 }
@@ -180,7 +182,8 @@ Raster two_planes(int samples, float value) {
   const Tile t = r.view();
   for (int s = 0; s < samples; ++s)
     for (int y = 5; y < 9; ++y)
-      for (int x = 0; x < 5; ++x) t.row<float>(0, s, y)[x] = value, t.row<std::uint32_t>(1, s, y)[x] = no_face;
+      for (int x = 0; x < 5; ++x)
+        t.row<float>(0, s, y)[x] = value, t.row<std::uint32_t>(1, s, y)[x] = no_face;
   return r;
 }
 
@@ -228,7 +231,8 @@ TEST(Pixels, AnEmptyWindowIsHealthyAndHasNoRows) {
 
 std::size_t bytes_of_parts(const std::vector<Buffer>& buffers) {
   std::map<const void*, std::size_t> parts;
-  for (const Buffer& b : buffers) b.type().parts(b.data(), [&](const void* p, std::size_t n) { parts[p] = n; });
+  for (const Buffer& b : buffers)
+    b.type().parts(b.data(), [&](const void* p, std::size_t n) { parts[p] = n; });
   std::size_t sum = 0;
   for (const auto& [p, n] : parts) sum += n;
   return sum;
@@ -263,9 +267,10 @@ TEST(Values, ACameraMayLookToInfinityButNotFromNaN) {
 
 TEST(Values, EveryKindIsDescribed) {
   for (const BufferType* t :
-       {&buffer_type<Mesh>(), &buffer_type<Image>(), &buffer_type<Depth>(), &buffer_type<Visibility>(), &buffer_type<SamplePattern>(),
-        &buffer_type<Camera>(), &buffer_type<Light>(), &buffer_type<Material>(), &buffer_type<Texture>(), &buffer_type<Surface>(),
-        &buffer_type<Number>(), &buffer_type<Matrix>(), &buffer_type<Table>()}) {
+       {&buffer_type<Mesh>(), &buffer_type<Image>(), &buffer_type<Depth>(), &buffer_type<Visibility>(),
+        &buffer_type<SamplePattern>(), &buffer_type<Camera>(), &buffer_type<Light>(),
+        &buffer_type<Material>(), &buffer_type<Texture>(), &buffer_type<Surface>(), &buffer_type<Number>(),
+        &buffer_type<Matrix>(), &buffer_type<Table>()}) {
     EXPECT_FALSE(t->name.empty());
     EXPECT_TRUE(t->doc.ends_with('.')) << t->name;
     EXPECT_THAT(std::string(t->color), testing::MatchesRegex("#[0-9a-f]{6}")) << t->name;

@@ -1,4 +1,5 @@
-// Colour spaces: matrices against published ones, curves against OpenColorIO, names, and files of configuration.
+// Colour spaces: matrices against published ones, curves against OpenColorIO, names, and files of
+// configuration.
 #include "runtime/io/color.h"
 
 #include "runtime/core/error.h"
@@ -15,7 +16,9 @@ namespace {
 
 using testing::HasSubstr;
 
-Matrix3 matrix(const char* from, const char* to) { return color_map(*find_embedded(from), *find_embedded(to)).matrix; }
+Matrix3 matrix(const char* from, const char* to) {
+  return color_map(*find_embedded(from), *find_embedded(to)).matrix;
+}
 
 void expect_near(const Matrix3& got, const Matrix3& want, double tolerance) {
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(got[i], want[i], tolerance) << i;
@@ -24,14 +27,16 @@ void expect_near(const Matrix3& got, const Matrix3& want, double tolerance) {
 // Computed from the primaries by others; ACES against OpenColorIO's own matrices, which have 8 digits.
 TEST(Color, MatricesAreThePublishedOnes) {
   expect_near(matrix("xyz_d65", "lin_rec709"),
-              {3.240969941905, -1.537383177570, -0.498610760293, -0.969243636281, 1.875967501508, 0.041555057407, 0.055630079697,
-               -0.203976958889, 1.056971514243},
+              {3.240969941905, -1.537383177570, -0.498610760293, -0.969243636281, 1.875967501508,
+               0.041555057407, 0.055630079697, -0.203976958889, 1.056971514243},
               1e-12);
   expect_near(matrix("lin_ap0", "lin_rec2020"),
-              {1.490409520542, -0.266170919266, -0.224238601276, -0.080167499872, 1.182167121098, -0.101999621225, 0.003227631192,
-               -0.034776475745, 1.031548844553},
+              {1.490409520542, -0.266170919266, -0.224238601276, -0.080167499872, 1.182167121098,
+               -0.101999621225, 0.003227631192, -0.034776475745, 1.031548844553},
               1e-12);
-  expect_near(matrix("lin_rec709", "lin_p3d65"), {0.82246197, 0.17753803, 0, 0.03319420, 0.96680580, 0, 0.01708263, 0.07239744, 0.91051993}, 5e-9);
+  expect_near(matrix("lin_rec709", "lin_p3d65"),
+              {0.82246197, 0.17753803, 0, 0.03319420, 0.96680580, 0, 0.01708263, 0.07239744, 0.91051993},
+              5e-9);
 }
 
 TEST(Color, WhiteIsWhiteInEverySpace) {
@@ -44,8 +49,8 @@ TEST(Color, WhiteIsWhiteInEverySpace) {
     }
 }
 
-// Every pair, ours against OpenColorIO. Where a curve takes part, its sRGB is smooth (relatively 2.5e-4 off in the toe) and its
-// powers are fast ones (1e-5); matrices alone agree to the rounding of floats.
+// Every pair, ours against OpenColorIO. Where a curve takes part, its sRGB is smooth (relatively 2.5e-4 off
+// in the toe) and its powers are fast ones (1e-5); matrices alone agree to the rounding of floats.
 TEST(Color, AgreesWithOpenColorIO) {
   for (const ColorSpace& a : embedded_spaces())
     for (const ColorSpace& b : embedded_spaces()) {
@@ -54,12 +59,15 @@ TEST(Color, AgreesWithOpenColorIO) {
       EXPECT_EQ(ours.identity(), theirs.identity()) << a.name << " to " << b.name;
       EXPECT_EQ(theirs.foreign(), !theirs.identity());
       for (const double level : {0.001, 0.02, 0.18, 0.9, 4.0}) {
-        float x[3] = {static_cast<float>(level), static_cast<float>(level * 0.8), static_cast<float>(level * 1.1)}, y[3] = {x[0], x[1], x[2]};
+        float x[3] = {static_cast<float>(level), static_cast<float>(level * 0.8),
+                      static_cast<float>(level * 1.1)},
+              y[3] = {x[0], x[1], x[2]};
         ours.apply(&x[0], &x[1], &x[2], 1);
         theirs.apply(&y[0], &y[1], &y[2], 1);
         const double scale = std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
         for (int k = 0; k < 3; ++k)
-          EXPECT_NEAR(x[k], y[k], scale * (ours.linear() ? 1e-6 : 6e-4)) << a.name << " to " << b.name << " of " << level;
+          EXPECT_NEAR(x[k], y[k], scale * (ours.linear() ? 1e-6 : 6e-4))
+              << a.name << " to " << b.name << " of " << level;
       }
     }
 }
@@ -162,8 +170,10 @@ TEST(Color, TheEnvironmentNamesAConfiguration) {
   } catch (const WorldError& e) {
     EXPECT_THAT(e.what(), HasSubstr("named by $OCIO"));
   }
-  if (old != nullptr) setenv("OCIO", kept.c_str(), 1);
-  else unsetenv("OCIO");
+  if (old != nullptr)
+    setenv("OCIO", kept.c_str(), 1);
+  else
+    unsetenv("OCIO");
   EXPECT_FALSE(ColorConfig::open({})->find("house"));
 }
 

@@ -1,6 +1,6 @@
 // Pictures go to files and come back; what cannot is said.
-#include "runtime/core/error.h"
 #include "runtime/io/image_files.h"
+#include "runtime/core/error.h"
 #include "tests/support/temp_file.h"
 
 #include <gmock/gmock.h>
@@ -45,8 +45,12 @@ Raster ramp(Rect window, PlaneList planes, Alpha alpha = Alpha::none, std::strin
 const PlaneList rgb{{"R"}, {"G"}, {"B"}}, rgba{{"R"}, {"G"}, {"B"}, {"A"}};
 
 SinkRequest request(const std::string& path, const std::vector<std::pair<std::string, Raster>>& layers) {
-  SinkRequest r{.path = path, .region = layers[0].second.frame().window, .display_window = layers[0].second.frame().window,
-                .layers = {}, .compression = {}, .metadata = {}};
+  SinkRequest r{.path = path,
+                .region = layers[0].second.frame().window,
+                .display_window = layers[0].second.frame().window,
+                .layers = {},
+                .compression = {},
+                .metadata = {}};
   for (const auto& [name, raster] : layers) r.layers.push_back({name, raster.frame()});
   return r;
 }
@@ -76,15 +80,17 @@ double largest_difference(const Raster& a, const Raster& b) {
   for (int p = 0; p < static_cast<int>(a.frame().planes.size()); ++p)
     for (int y = 0; y < wa.height(); ++y)
       for (int x = 0; x < wa.width(); ++x)
-        worst = std::max(worst, std::abs(a.value(p, 0, wa.x0 + x, wa.y0 + y) - b.value(p, 0, wb.x0 + x, wb.y0 + y)));
+        worst = std::max(worst,
+                         std::abs(a.value(p, 0, wa.x0 + x, wa.y0 + y) - b.value(p, 0, wb.x0 + x, wb.y0 + y)));
   return worst;
 }
 
 TEST(ImageFiles, EachFormatKeepsAsMuchAsItsDepth) {
   const Raster picture = ramp({0, 0, 16, 12}, rgb);
-  const std::tuple<const char*, int, double> cases[] = {{"a.png", 0, 0.5 / 255},   {"a.png", 16, 0.5 / 65535}, {"a.tif", 8, 0.5 / 255},
-                                                        {"a.tiff", 0, 0.5 / 65535}, {"a.TIF", 32, 0},          {"a.exr", 0, 0x1p-12},
-                                                        {"a.exr", 32, 0},           {"a.hdr", 0, 1.0 / 256},   {"a.jpg", 0, 0.03}};
+  const std::tuple<const char*, int, double> cases[] = {
+      {"a.png", 0, 0.5 / 255},    {"a.png", 16, 0.5 / 65535}, {"a.tif", 8, 0.5 / 255},
+      {"a.tiff", 0, 0.5 / 65535}, {"a.TIF", 32, 0},           {"a.exr", 0, 0x1p-12},
+      {"a.exr", 32, 0},           {"a.hdr", 0, 1.0 / 256},    {"a.jpg", 0, 0.03}};
   for (const auto& [name, bits, tolerance] : cases) {
     const ImageFile back = round_trip(name, picture, bits);
     EXPECT_EQ(back.raster.frame().planes, rgb) << name;
@@ -106,8 +112,10 @@ TEST(ImageFiles, ExrHoldsLayersKindsAndWindows) {
   const test::TempFolder folder;
   const Rect region{-3, 2, 13, 14};
   const Raster main = ramp(region, rgba, Alpha::premultiplied, "lin_rec709"), depth = ramp(region, {{"Z"}}),
-               ids = ramp(region, {{"id", PlaneKind::u32}}), points = ramp(region, {{"N.x", PlaneKind::f64}, {"N.y", PlaneKind::f64}});
-  const std::vector<std::pair<std::string, Raster>> layers{{"", main}, {"Z", depth}, {"object", ids}, {"N", points}, {"diffuse", main}};
+               ids = ramp(region, {{"id", PlaneKind::u32}}),
+               points = ramp(region, {{"N.x", PlaneKind::f64}, {"N.y", PlaneKind::f64}});
+  const std::vector<std::pair<std::string, Raster>> layers{
+      {"", main}, {"Z", depth}, {"object", ids}, {"N", points}, {"diffuse", main}};
   SinkRequest r = request(folder.file("a.exr"), layers);
   r.display_window = {-10, -10, 100, 50};
   r.metadata = {{"Software", "frustum test"}};
@@ -116,7 +124,8 @@ TEST(ImageFiles, ExrHoldsLayersKindsAndWindows) {
   EXPECT_EQ(back.raster.frame().window, region);
   EXPECT_EQ(back.display_window, r.display_window);
   EXPECT_EQ(back.raster.frame().alpha, Alpha::premultiplied);
-  EXPECT_THAT(back.metadata, testing::Contains(std::pair<std::string, std::string>("Software", "frustum test")));
+  EXPECT_THAT(back.metadata,
+              testing::Contains(std::pair<std::string, std::string>("Software", "frustum test")));
   const auto plane = [&](const char* name) { return back.raster.frame().find(name).value(); };
   EXPECT_EQ(back.raster.frame().planes.size(), 12u);
   EXPECT_EQ(back.raster.at<std::uint32_t>(plane("object.id"), 0, 5, 7), ids.at<std::uint32_t>(0, 0, 5, 7));
@@ -151,12 +160,18 @@ TEST(ImageFiles, PngStoresStraightAlphaAndGivesItBackPremultiplied) {
 }
 
 TEST(ImageFiles, ColourSpacesComeBack) {
-  EXPECT_EQ(round_trip("a.png", ramp({0, 0, 4, 4}, rgb, Alpha::none, "srgb")).raster.frame().color_space, "srgb");
-  EXPECT_EQ(round_trip("a.jpg", ramp({0, 0, 4, 4}, rgb, Alpha::none, "srgb")).raster.frame().color_space, "srgb");
-  EXPECT_EQ(round_trip("a.exr", ramp({0, 0, 4, 4}, rgb, Alpha::none, "lin_ap1")).raster.frame().color_space, "lin_ap1");
-  EXPECT_EQ(round_trip("a.exr", ramp({0, 0, 4, 4}, rgb, Alpha::none, "")).raster.frame().color_space, "lin_rec709");
-  EXPECT_EQ(round_trip("a.hdr", ramp({0, 0, 4, 4}, rgb, Alpha::none, "")).raster.frame().color_space, "lin_rec709");
-  EXPECT_EQ(round_trip("a.exr", ramp({0, 0, 4, 4}, {{"Z"}})).raster.frame().color_space, "") << "depth is no colour";
+  EXPECT_EQ(round_trip("a.png", ramp({0, 0, 4, 4}, rgb, Alpha::none, "srgb")).raster.frame().color_space,
+            "srgb");
+  EXPECT_EQ(round_trip("a.jpg", ramp({0, 0, 4, 4}, rgb, Alpha::none, "srgb")).raster.frame().color_space,
+            "srgb");
+  EXPECT_EQ(round_trip("a.exr", ramp({0, 0, 4, 4}, rgb, Alpha::none, "lin_ap1")).raster.frame().color_space,
+            "lin_ap1");
+  EXPECT_EQ(round_trip("a.exr", ramp({0, 0, 4, 4}, rgb, Alpha::none, "")).raster.frame().color_space,
+            "lin_rec709");
+  EXPECT_EQ(round_trip("a.hdr", ramp({0, 0, 4, 4}, rgb, Alpha::none, "")).raster.frame().color_space,
+            "lin_rec709");
+  EXPECT_EQ(round_trip("a.exr", ramp({0, 0, 4, 4}, {{"Z"}})).raster.frame().color_space, "")
+      << "depth is no colour";
 }
 
 TEST(ImageFiles, BytesDependOnPixelsAlone) {
@@ -226,15 +241,16 @@ TEST(ImageFiles, FoldersAreMadeAndOneThatCannotBeIsSaid) {
   write(request(folder.file("new/deep/a.png"), {{"", picture}}), {{"", picture}});
   EXPECT_TRUE(std::filesystem::exists(folder.file("new/deep/a.png")));
   folder.write("file", "");
-  const auto [code, message] =
-      error_of<WorldError>([&] { write(request(folder.file("file/a.png"), {{"", picture}}), {{"", picture}}); });
+  const auto [code, message] = error_of<WorldError>([&] {
+    write(request(folder.file("file/a.png"), {{"", picture}}), {{"", picture}});
+  });
   EXPECT_EQ(code, "cannot_write_file");
   EXPECT_THAT(message, HasSubstr("Not a directory"));
 }
 
 TEST(ImageFiles, RefusesWhatAFormatCannotHold) {
-  const Raster color = ramp({0, 0, 4, 4}, rgb), depth = ramp({0, 0, 4, 4}, {{"Z"}}), both = ramp({0, 0, 4, 4}, {{"R"}, {"Z"}}),
-               ids = ramp({0, 0, 4, 4}, {{"id", PlaneKind::u32}});
+  const Raster color = ramp({0, 0, 4, 4}, rgb), depth = ramp({0, 0, 4, 4}, {{"Z"}}),
+               both = ramp({0, 0, 4, 4}, {{"R"}, {"Z"}}), ids = ramp({0, 0, 4, 4}, {{"id", PlaneKind::u32}});
   const auto refused = [](SinkRequest r) { return error_of<NodeError>([&] { open_image_sink(r); }); };
   EXPECT_EQ(refused(request("a.pgn", {{"", color}})).first, "unknown_format");
   EXPECT_THAT(refused(request("a.pgn", {{"", color}})).second, HasSubstr("did you mean .png?"));
@@ -245,7 +261,8 @@ TEST(ImageFiles, RefusesWhatAFormatCannotHold) {
   EXPECT_EQ(refused(request("a.exr", {{"", color}, {"", color}})).first, "format_cannot_hold");
   SinkRequest r = request("a.png", {{"", color}});
   r.bits = 12;
-  EXPECT_EQ(refused(r), (std::pair<std::string, std::string>{"bad_bits", "a.png: png has 8 or 16 bits, not 12"}));
+  EXPECT_EQ(refused(r),
+            (std::pair<std::string, std::string>{"bad_bits", "a.png: png has 8 or 16 bits, not 12"}));
   r.bits = 0, r.compression = "zip";
   EXPECT_EQ(refused(r).first, "unknown_compression");
   r.path = "a.jpg", r.compression = "quality:101";
@@ -266,7 +283,8 @@ TEST(ImageFiles, ACompressionThatIsAskedForIsUsed) {
   EXPECT_NE(sizes["zip"], sizes["piz"]);
 }
 
-// Files that are cut, empty, of noise, or that promise more than there is: always an error, never a picture or a crash.
+// Files that are cut, empty, of noise, or that promise more than there is: always an error, never a picture
+// or a crash.
 TEST(ImageFiles, BrokenFilesAreErrors) {
   const test::TempFolder folder;
   const Raster picture = ramp({0, 0, 64, 64}, rgb);
@@ -275,20 +293,25 @@ TEST(ImageFiles, BrokenFilesAreErrors) {
     const std::string whole = content(folder.file(name));
     for (const double part : {0.0, 0.02, 0.3, 0.7, 0.9}) {
       folder.write(name, whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
-      EXPECT_EQ(error_of<NodeError>([&] { read_image(folder.file(name), name); }).first, "malformed_file") << name << " " << part;
+      EXPECT_EQ(error_of<NodeError>([&] { read_image(folder.file(name), name); }).first, "malformed_file")
+          << name << " " << part;
     }
     folder.write(name, "not a picture at all");
-    EXPECT_EQ(error_of<NodeError>([&] { read_image(folder.file(name), name); }).first, "malformed_file") << name;
+    EXPECT_EQ(error_of<NodeError>([&] { read_image(folder.file(name), name); }).first, "malformed_file")
+        << name;
   }
   EXPECT_EQ(error_of<WorldError>([&] { read_image(folder.file("none.png"), "none.png"); }),
-            (std::pair<std::string, std::string>{"cannot_read_file", "cannot read none.png: No such file or directory"}));
+            (std::pair<std::string, std::string>{"cannot_read_file",
+                                                 "cannot read none.png: No such file or directory"}));
   EXPECT_EQ(error_of<WorldError>([&] { read_image(folder.path(), "folder"); }).first, "cannot_read_file");
 }
 
-// A PNG of 33 bytes that claims a million pixels squared (with a wrong checksum and with a right one it is no picture).
+// A PNG of 33 bytes that claims a million pixels squared (with a wrong checksum and with a right one it is
+// no picture).
 TEST(ImageFiles, AHeaderThatLiesAboutItsSizeIsAnError) {
   const test::TempFolder folder;
-  const std::string huge("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\x0f\x42\x40\0\x0f\x42\x40\x08\x02\0\0\0\x5d\xf7\x6e\x3e", 33);
+  const std::string huge(
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\x0f\x42\x40\0\x0f\x42\x40\x08\x02\0\0\0\x5d\xf7\x6e\x3e", 33);
   folder.write("huge.png", huge);
   bool refused = false;
   try {
@@ -305,19 +328,28 @@ TEST(ImageFiles, ASubimageThatIsNotThereIsSaid) {
   const test::TempFolder folder;
   const Raster picture = ramp({0, 0, 4, 4}, rgb);
   write(request(folder.file("a.exr"), {{"", picture}}), {{"", picture}});
-  EXPECT_THAT(error_of<NodeError>([&] { read_image(folder.file("a.exr"), "a.exr", 1); }).second, HasSubstr("no subimage 1"));
+  EXPECT_THAT(error_of<NodeError>([&] { read_image(folder.file("a.exr"), "a.exr", 1); }).second,
+              HasSubstr("no subimage 1"));
 }
 
 // TIFF 6.0, tag 274: a picture of two rows, stored turned; upright it always shows the same.
 TEST(ImageFiles, ATurnedPictureIsReadUpright) {
   const test::TempFolder folder;
-  const char* rows[9][3] = {{}, {"ab", "cd", "ef"}, {"ba", "dc", "fe"}, {"fe", "dc", "ba"}, {"ef", "cd", "ab"},
-                            {"ace", "bdf"}, {"bdf", "ace"}, {"fdb", "eca"}, {"eca", "fdb"}};
+  const char* rows[9][3] = {{},
+                            {"ab", "cd", "ef"},
+                            {"ba", "dc", "fe"},
+                            {"fe", "dc", "ba"},
+                            {"ef", "cd", "ab"},
+                            {"ace", "bdf"},
+                            {"bdf", "ace"},
+                            {"fdb", "eca"},
+                            {"eca", "fdb"}};
   for (int orientation = 1; orientation <= 8; ++orientation) {
     const int w = orientation < 5 ? 2 : 3, h = 5 - w;
     const Raster stored(Frame{.window = {0, 0, w, h}, .planes = rgb});
     for (int y = 0; y < h; ++y)
-      for (int x = 0; x < w; ++x) stored.view().row<float>(0, 0, y)[x] = static_cast<float>(rows[orientation][y][x]) / 255.0f;
+      for (int x = 0; x < w; ++x)
+        stored.view().row<float>(0, 0, y)[x] = static_cast<float>(rows[orientation][y][x]) / 255.0f;
     SinkRequest r = request(folder.file("t.tif"), {{"", stored}});
     r.bits = 8, r.compression = "none";
     write(r, {{"", stored}});

@@ -16,7 +16,8 @@ std::shared_ptr<void> read_params(const NodeType& type, const Json& json, const 
   return params;
 }
 
-std::vector<Buffer> run_pixels(const NodeType& type, const void* params, const NodeInputs& inputs, Context& ctx, int edge) {
+std::vector<Buffer> run_pixels(const NodeType& type, const void* params, const NodeInputs& inputs,
+                               Context& ctx, int edge) {
   std::vector<PreparedInput> prepared;
   std::vector<Tile> in;
   for (std::size_t i = 0; i < type.inputs.size(); ++i) {
@@ -40,7 +41,8 @@ std::vector<Buffer> run_pixels(const NodeType& type, const void* params, const N
   std::vector<Raster> rasters;
   for (const auto& frame : node.frames) rasters.emplace_back(*frame);
   const Rect window = rasters.at(0).frame().window;
-  const int w = edge > 0 ? edge : std::max(1, window.width()), h = edge > 0 ? edge : std::max(1, window.height());
+  const int w = edge > 0 ? edge : std::max(1, window.width()),
+            h = edge > 0 ? edge : std::max(1, window.height());
   Arena arena;
   for (int y = window.y0; y < window.y1; y += h)
     for (int x = window.x0; x < window.x1; x += w) {
@@ -48,14 +50,16 @@ std::vector<Buffer> run_pixels(const NodeType& type, const void* params, const N
       std::vector<Tile> out, part;
       for (const Raster& r : rasters) out.push_back(r.view(rect));
       for (std::size_t i = 0; i < in.size(); ++i) {
-        const Rect reads = in[i].empty() ? Rect{} : intersection(in[i].rect(), type.reads(node.state.get(), i, rect));
+        const Rect reads =
+            in[i].empty() ? Rect{} : intersection(in[i].rect(), type.reads(node.state.get(), i, rect));
         part.push_back(in[i].empty() || reads.empty() ? in[i] : in[i].part(reads));
       }
       type.tile(node.state.get(), part, out, arena);
       arena.reset();
     }
   std::vector<Buffer> buffers;
-  for (std::size_t i = 0; i < rasters.size(); ++i) buffers.push_back(type.outputs[i].types.at(0)->from_raster(rasters[i]));
+  for (std::size_t i = 0; i < rasters.size(); ++i)
+    buffers.push_back(type.outputs[i].types.at(0)->from_raster(rasters[i]));
   return buffers;
 }
 
@@ -72,8 +76,8 @@ std::vector<Buffer> run_node(const NodeType& type, const Json& params, const Nod
   return type.run(all, p.get(), context);
 }
 
-std::pair<std::string, std::string> run_error(const NodeType& type, const Json& params, const NodeInputs& inputs,
-                                              const std::string& folder) {
+std::pair<std::string, std::string> run_error(const NodeType& type, const Json& params,
+                                              const NodeInputs& inputs, const std::string& folder) {
   try {
     run_node(type, params, inputs, nullptr, folder);
   } catch (const NodeError& e) {

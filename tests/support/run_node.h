@@ -10,8 +10,9 @@ namespace frustum::test {
 
 using NodeInputs = std::vector<std::vector<Buffer>>;  // one list a declared input, in order; empty: left out
 
-// The node's outputs in declared order. `folder` is what relative files start from. Throws std::runtime_error with the
-// diagnostics where the parameters are wrong. A pixel node fills its whole frame in tiles of `tile_edge` (0: one tile).
+// The node's outputs in declared order. `folder` is what relative files start from. Throws
+// std::runtime_error with the diagnostics where the parameters are wrong. A pixel node fills its whole
+// frame in tiles of `tile_edge` (0: one tile).
 std::vector<Buffer> run_node(const NodeType&, const Json& params, const NodeInputs& = {}, Context* = nullptr,
                              const std::string& folder = {}, int tile_edge = 0);
 

@@ -29,7 +29,8 @@ HWY_INLINE V encode(const CurveIn<float>& k, V v) {
   const V a = hn::Abs(v);
   const V power = frustum::HWY_NAMESPACE::pow(d, a, hn::Set(d, k.power));
   const V curved = hn::Sub(hn::Mul(power, hn::Set(d, k.scale)), hn::Set(d, k.offset));
-  return hn::CopySign(hn::IfThenElse(hn::Le(a, hn::Set(d, k.knee)), hn::Mul(a, hn::Set(d, k.slope)), curved), v);
+  return hn::CopySign(hn::IfThenElse(hn::Le(a, hn::Set(d, k.knee)), hn::Mul(a, hn::Set(d, k.slope)), curved),
+                      v);
 }
 
 HWY_INLINE V decode(const CurveIn<float>& k, V v) {
@@ -37,7 +38,8 @@ HWY_INLINE V decode(const CurveIn<float>& k, V v) {
   const V a = hn::Abs(v);
   const V base = hn::Mul(hn::Add(a, hn::Set(d, k.offset)), hn::Set(d, k.scale));
   const V curved = frustum::HWY_NAMESPACE::pow(d, base, hn::Set(d, k.power));
-  return hn::CopySign(hn::IfThenElse(hn::Le(a, hn::Set(d, k.knee)), hn::Mul(a, hn::Set(d, k.slope)), curved), v);
+  return hn::CopySign(hn::IfThenElse(hn::Le(a, hn::Set(d, k.knee)), hn::Mul(a, hn::Set(d, k.slope)), curved),
+                      v);
 }
 
 HWY_INLINE V row(const float* m, V x, V y, V z) {

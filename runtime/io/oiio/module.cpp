@@ -9,7 +9,8 @@ class OiioModule : public frustum::ImageModule {
   frustum::ImageFile read(const std::string& path, std::string_view name, int subimage) const override {
     return frustum::oiio::read(path, name, subimage);
   }
-  std::unique_ptr<frustum::Sink> open(const frustum::SinkRequest& request, const frustum::SinkPlan& plan) const override {
+  std::unique_ptr<frustum::Sink> open(const frustum::SinkRequest& request,
+                                      const frustum::SinkPlan& plan) const override {
     return frustum::oiio::open(request, plan);
   }
 };

@@ -19,7 +19,8 @@ namespace {
 std::atomic<unsigned> serial{0};
 
 std::string temporary_name(const std::filesystem::path& path) {
-  return (path.parent_path() / fmt::format(".{}.{}-{}.part", path.filename().string(), getpid(), serial++)).string();
+  return (path.parent_path() / fmt::format(".{}.{}-{}.part", path.filename().string(), getpid(), serial++))
+      .string();
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 namespace frustum::oiio {
 
-// A stream to read, write and seek in, which remembers the first error of the operating system (a full disk): image libraries
-// drop some of them.
+// A stream to read, write and seek in, which remembers the first error of the operating system (a full
+// disk): image libraries drop some of them.
 class PartialFile {
  public:
   // Makes ".NAME.<process>-<number>.part" in the folder of `path`, and that folder where it is missing.

@@ -30,8 +30,10 @@ struct File {
 void check_readable(const std::string& path, const File& file) {
   struct stat info {};
   std::string_view why;
-  if (stat(path.c_str(), &info) != 0) why = std::strerror(errno);
-  else if (!S_ISREG(info.st_mode)) why = "it is not a regular file";
+  if (stat(path.c_str(), &info) != 0)
+    why = std::strerror(errno);
+  else if (!S_ISREG(info.st_mode))
+    why = "it is not a regular file";
   if (!why.empty()) throw WorldError("cannot_read_file", fmt::format("cannot read {}: {}", file.name, why));
 }
 
@@ -60,10 +62,13 @@ std::vector<std::string> plane_names(const lib::ImageSpec& s) {
   std::vector<std::string> names;
   std::set<std::string> taken;
   for (int c = 0; c < s.nchannels; ++c) {
-    std::string name = static_cast<std::size_t>(c) < s.channelnames.size() ? s.channelnames[static_cast<std::size_t>(c)] : "";
+    std::string name = static_cast<std::size_t>(c) < s.channelnames.size()
+                           ? s.channelnames[static_cast<std::size_t>(c)]
+                           : "";
     if (name.empty()) name = fmt::format("channel{}", c);
     const std::size_t n = name.size();
-    if (n > 2 && name[n - 2] == '.' && name[n - 1] >= 'W' && name[n - 1] <= 'Z') name[n - 1] = static_cast<char>(name[n - 1] + 32);
+    if (n > 2 && name[n - 2] == '.' && name[n - 1] >= 'W' && name[n - 1] <= 'Z')
+      name[n - 1] = static_cast<char>(name[n - 1] + 32);
     std::string fresh = name;
     for (int k = 2; !taken.insert(fresh).second; ++k) fresh = fmt::format("{}_{}", name, k);
     names.push_back(fresh);
@@ -71,14 +76,18 @@ std::vector<std::string> plane_names(const lib::ImageSpec& s) {
   return names;
 }
 
-PlaneKind kind_of(lib::TypeDesc type) { return type.basetype == lib::TypeDesc::UINT32 ? PlaneKind::u32 : PlaneKind::f32; }
+PlaneKind kind_of(lib::TypeDesc type) {
+  return type.basetype == lib::TypeDesc::UINT32 ? PlaneKind::u32 : PlaneKind::f32;
+}
 
 std::string space_of_chromaticities(const lib::ImageSpec& s) {
   const lib::ParamValue* p = s.find_attribute("chromaticities");
   if (p == nullptr || p->type().basevalues() != 8 || p->type().basetype != lib::TypeDesc::FLOAT) return {};
   const auto* xy = static_cast<const float*>(p->data());
   for (const Primaries& known : known_primaries) {
-    const bool same = std::equal(known.xy.begin(), known.xy.end(), xy, [](double a, float b) { return std::abs(a - static_cast<double>(b)) < 1e-3; });
+    const bool same = std::equal(known.xy.begin(), known.xy.end(), xy, [](double a, float b) {
+      return std::abs(a - static_cast<double>(b)) < 1e-3;
+    });
     if (same) return std::string(known.linear_space);
   }
   return {};
@@ -98,7 +107,8 @@ std::string color_space_of(const lib::ImageSpec& s) {
   return s.format.is_floating_point() ? "lin_rec709" : "srgb";
 }
 
-// One run of channels with the same kind, rows [y0, y1), interleaved. Integers stay what they are: dividing them is ours.
+// One run of channels with the same kind, rows [y0, y1), interleaved. Integers stay what they are: dividing
+// them is ours.
 class Rows {
  public:
   Rows(lib::ImageInput& in, const lib::ImageSpec& spec, int subimage, const File& file)
@@ -108,13 +118,14 @@ class Rows {
   const T* read(int first_channel, int end_channel, int y0, int y1, lib::TypeDesc type) {
     const auto n = static_cast<std::size_t>(end_channel - first_channel);
     data_.resize(n * static_cast<std::size_t>(spec_.width) * static_cast<std::size_t>(y1 - y0) * sizeof(T));
-    const bool done =
-        spec_.tile_width == 0
-            ? in_.read_scanlines(subimage_, 0, y0, y1, spec_.z, first_channel, end_channel, type, data_.data())
-            : in_.read_tiles(subimage_, 0, spec_.x, spec_.x + spec_.width, y0, y1, spec_.z, spec_.z + 1, first_channel, end_channel,
-                             type, data_.data());
+    const bool done = spec_.tile_width == 0
+                          ? in_.read_scanlines(subimage_, 0, y0, y1, spec_.z, first_channel, end_channel,
+                                               type, data_.data())
+                          : in_.read_tiles(subimage_, 0, spec_.x, spec_.x + spec_.width, y0, y1, spec_.z,
+                                           spec_.z + 1, first_channel, end_channel, type, data_.data());
     // Some readers fill in what a truncated file lacks, and only leave a message.
-    if (!done || in_.has_error()) file_.malformed(fmt::format("rows {} to {} cannot be read: {}", y0, y1 - 1, one_line(in_.geterror())));
+    if (!done || in_.has_error())
+      file_.malformed(fmt::format("rows {} to {} cannot be read: {}", y0, y1 - 1, one_line(in_.geterror())));
     return reinterpret_cast<const T*>(data_.data());
   }
   int step() const { return spec_.tile_width == 0 ? 64 : std::max(1, spec_.tile_height); }
@@ -128,7 +139,8 @@ class Rows {
 };
 
 template <class From, class To, class Convert>
-void scatter(const From* from, const Tile& to, int first_plane, int planes, int y0, int y1, Convert&& convert) {
+void scatter(const From* from, const Tile& to, int first_plane, int planes, int y0, int y1,
+             Convert&& convert) {
   const int width = to.rect().width();
   tbb::parallel_for(y0, y1, [&](int y) {
     const From* row = from + std::ptrdiff_t{y - y0} * width * planes;
@@ -139,27 +151,33 @@ void scatter(const From* from, const Tile& to, int first_plane, int planes, int 
   });
 }
 
-void fill(lib::ImageInput& in, const lib::ImageSpec& spec, int subimage, const Raster& raster, const File& file) {
+void fill(lib::ImageInput& in, const lib::ImageSpec& spec, int subimage, const Raster& raster,
+          const File& file) {
   Rows rows(in, spec, subimage, file);
   const Tile to = raster.view();
   const auto& planes = raster.frame().planes;
   const auto base = spec.format.basetype;
   for (int first = 0, end = 0; first < spec.nchannels; first = end) {
     const PlaneKind kind = planes[static_cast<std::size_t>(first)].kind;
-    for (end = first; end < spec.nchannels && planes[static_cast<std::size_t>(end)].kind == kind; ++end) {}
+    for (end = first; end < spec.nchannels && planes[static_cast<std::size_t>(end)].kind == kind; ++end) {
+    }
     for (int y0 = spec.y; y0 < spec.y + spec.height; y0 += rows.step()) {
       const int y1 = std::min(y0 + rows.step(), spec.y + spec.height), n = end - first;
       if (kind == PlaneKind::u32)
-        scatter<std::uint32_t, std::uint32_t>(rows.read<std::uint32_t>(first, end, y0, y1, lib::TypeDesc::UINT32), to, first, n, y0, y1,
-                                              [](std::uint32_t v) { return v; });
+        scatter<std::uint32_t, std::uint32_t>(
+            rows.read<std::uint32_t>(first, end, y0, y1, lib::TypeDesc::UINT32), to, first, n, y0, y1,
+            [](std::uint32_t v) { return v; });
       else if (base == lib::TypeDesc::UINT8)
-        scatter<std::uint8_t, float>(rows.read<std::uint8_t>(first, end, y0, y1, lib::TypeDesc::UINT8), to, first, n, y0, y1,
+        scatter<std::uint8_t, float>(rows.read<std::uint8_t>(first, end, y0, y1, lib::TypeDesc::UINT8), to,
+                                     first, n, y0, y1,
                                      [](std::uint8_t v) { return static_cast<float>(v) / 255.0f; });
       else if (base == lib::TypeDesc::UINT16)
-        scatter<std::uint16_t, float>(rows.read<std::uint16_t>(first, end, y0, y1, lib::TypeDesc::UINT16), to, first, n, y0, y1,
+        scatter<std::uint16_t, float>(rows.read<std::uint16_t>(first, end, y0, y1, lib::TypeDesc::UINT16), to,
+                                      first, n, y0, y1,
                                       [](std::uint16_t v) { return static_cast<float>(v) / 65535.0f; });
       else
-        scatter<float, float>(rows.read<float>(first, end, y0, y1, lib::TypeDesc::FLOAT), to, first, n, y0, y1, [](float v) { return v; });
+        scatter<float, float>(rows.read<float>(first, end, y0, y1, lib::TypeDesc::FLOAT), to, first, n, y0,
+                              y1, [](float v) { return v; });
     }
   }
 }
@@ -193,7 +211,8 @@ Raster with_rgb(const Raster& grey) {
   return out;
 }
 
-// The pixel of the stored picture (w x h) that a viewer shows at x, y; `orientation` as in TIFF 6.0, section 8.
+// The pixel of the stored picture (w x h) that a viewer shows at x, y; `orientation` as in TIFF 6.0,
+// section 8.
 std::pair<int, int> stored_pixel(int orientation, int x, int y, int w, int h) {
   switch (orientation) {
     case 2: return {w - 1 - x, y};
@@ -222,20 +241,25 @@ Raster upright(const Raster& stored, int orientation) {
     });
   };
   for (int p = 0; p < static_cast<int>(f.planes.size()); ++p)
-    if (f.planes[static_cast<std::size_t>(p)].kind == PlaneKind::u32) turn(p, static_cast<const std::uint32_t*>(nullptr));
-    else turn(p, static_cast<const float*>(nullptr));
+    if (f.planes[static_cast<std::size_t>(p)].kind == PlaneKind::u32)
+      turn(p, static_cast<const std::uint32_t*>(nullptr));
+    else
+      turn(p, static_cast<const float*>(nullptr));
   return out;
 }
 
 ImageFile read_all(const std::string& path, int subimage, const File& file) {
   const auto in = open_input(path, file);
-  if (subimage < 0 || !in->seek_subimage(subimage, 0)) file.malformed(fmt::format("there is no subimage {}", subimage));
+  if (subimage < 0 || !in->seek_subimage(subimage, 0))
+    file.malformed(fmt::format("there is no subimage {}", subimage));
   const lib::ImageSpec spec = in->spec();
   check_spec(spec, file);
   Frame f{.window = {spec.x, spec.y, spec.x + spec.width, spec.y + spec.height}};
   const auto names = plane_names(spec);
-  for (int c = 0; c < spec.nchannels; ++c) f.planes.push_back({names[static_cast<std::size_t>(c)], kind_of(spec.channelformat(c))});
-  const bool grey = (names[0] == "Y" || (names.size() == 1 && !spec.format.is_floating_point())) && f.planes[0].kind == PlaneKind::f32 &&
+  for (int c = 0; c < spec.nchannels; ++c)
+    f.planes.push_back({names[static_cast<std::size_t>(c)], kind_of(spec.channelformat(c))});
+  const bool grey = (names[0] == "Y" || (names.size() == 1 && !spec.format.is_floating_point())) &&
+                    f.planes[0].kind == PlaneKind::f32 &&
                     (names.size() == 1 || (names.size() == 2 && names[1] == "A"));
   const bool color = grey || (f.find("R") && f.find("G") && f.find("B"));
   if (color) f.color_space = color_space_of(spec);
@@ -246,13 +270,15 @@ ImageFile read_all(const std::string& path, int subimage, const File& file) {
   if (grey) raster = with_rgb(raster);
   if (spec.get_int_attribute("oiio:UnassociatedAlpha") != 0) premultiply(raster);
   ImageFile out{.raster = raster,
-                .display_window = {spec.full_x, spec.full_y, spec.full_x + spec.full_width, spec.full_y + spec.full_height},
+                .display_window = {spec.full_x, spec.full_y, spec.full_x + spec.full_width,
+                                   spec.full_y + spec.full_height},
                 .format = in->format_name()};
   if (const int orientation = spec.get_int_attribute("Orientation", 1); orientation > 1 && orientation <= 8) {
     out.raster = upright(raster, orientation);
     out.display_window = out.raster.frame().window;
   }
-  for (const lib::ParamValue& p : spec.extra_attribs) out.metadata.emplace_back(p.name().string(), p.get_string());
+  for (const lib::ParamValue& p : spec.extra_attribs)
+    out.metadata.emplace_back(p.name().string(), p.get_string());
   return out;
 }
 

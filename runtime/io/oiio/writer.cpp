@@ -66,7 +66,8 @@ const Primaries* primaries_of(std::string_view space) {
 }
 
 void describe_color(const Frame& frame, const SinkPlan& plan, lib::ImageSpec& spec) {
-  // In TIFF a colour space makes the library write an EXIF directory, and then files that it cannot read itself (2.4.7).
+  // In TIFF a colour space makes the library write an EXIF directory, and then files that it cannot read
+  // itself (2.4.7).
   if (frame.color_space.empty() || plan.format == "tiff") return;
   spec.attribute("frustum:colorSpace", frame.color_space);
   if (frame.color_space == "srgb") spec.attribute("oiio:ColorSpace", "sRGB");
@@ -81,13 +82,15 @@ void describe_color(const Frame& frame, const SinkPlan& plan, lib::ImageSpec& sp
 
 lib::ImageSpec make_spec(const SinkRequest& r, const SinkPlan& plan) {
   const Rect& w = r.region;
-  lib::ImageSpec spec(w.width(), w.height(), static_cast<int>(plan.channels.size()), type_desc(plan.channels[0].type));
+  lib::ImageSpec spec(w.width(), w.height(), static_cast<int>(plan.channels.size()),
+                      type_desc(plan.channels[0].type));
   spec.channelnames.clear();
   for (const SinkChannel& c : plan.channels) {
     spec.channelnames.push_back(c.name);
     spec.channelformats.push_back(type_desc(c.type));
   }
-  if (std::all_of(spec.channelformats.begin(), spec.channelformats.end(), [&](auto t) { return t == spec.format; }))
+  if (std::all_of(spec.channelformats.begin(), spec.channelformats.end(),
+                  [&](auto t) { return t == spec.format; }))
     spec.channelformats.clear();
   spec.alpha_channel = plan.alpha;
   if (plan.windows) {
@@ -96,13 +99,15 @@ lib::ImageSpec make_spec(const SinkRequest& r, const SinkPlan& plan) {
     spec.full_x = d.x0, spec.full_y = d.y0, spec.full_width = d.width(), spec.full_height = d.height();
   }
   if (plan.format == "jpeg") {
-    spec.attribute("compression", plan.compression.empty() ? "jpeg:98" : "jpeg:" + plan.compression.substr(8));
+    spec.attribute("compression",
+                   plan.compression.empty() ? "jpeg:98" : "jpeg:" + plan.compression.substr(8));
     spec.attribute("jpeg:subsampling", "4:4:4");
   } else if (!plan.compression.empty()) {
     spec.attribute("compression", plan.compression);
   }
   const Frame& main = r.layers[static_cast<std::size_t>(plan.channels[0].layer)].frame;
-  if (plan.alpha >= 0 && (plan.straighten || main.alpha == Alpha::straight)) spec.attribute("oiio:UnassociatedAlpha", 1);
+  if (plan.alpha >= 0 && (plan.straighten || main.alpha == Alpha::straight))
+    spec.attribute("oiio:UnassociatedAlpha", 1);
   describe_color(main, plan, spec);
   spec.attribute("DateTime", "");  // else the library writes the time of day, and equal pictures differ
   for (const auto& [key, value] : r.metadata) spec.attribute(key, value);
@@ -142,7 +147,11 @@ class Stream : public lib::Filesystem::IOProxy {
 class FileSink : public Sink {
  public:
   FileSink(const SinkRequest& request, const SinkPlan& plan)
-      : plan_(plan), region_(request.region), path_(request.path), file_(request.path), stream_(request.path, file_),
+      : plan_(plan),
+        region_(request.region),
+        path_(request.path),
+        file_(request.path),
+        stream_(request.path, file_),
         out_(lib::ImageOutput::create(plan.format == "exr" ? "openexr" : plan.format)) {
     if (!out_) fail(lib::geterror());
     const lib::ImageSpec spec = make_spec(request, plan);
@@ -211,7 +220,8 @@ class FileSink : public Sink {
   }
 
   template <class T>
-  void convert(const Tile& t, const SinkChannel& channel, std::span<const Tile> layers, int y, std::byte* to) const {
+  void convert(const Tile& t, const SinkChannel& channel, std::span<const Tile> layers, int y,
+               std::byte* to) const {
     const T* from = t.row<const T>(channel.plane, 0, y);
     const int width = t.rect().width();
     if constexpr (std::is_same_v<T, std::uint32_t>) {
@@ -225,14 +235,16 @@ class FileSink : public Sink {
       const PlaneKind kind = t.frame().planes[static_cast<std::size_t>(a.plane)].kind;
       const Tile& at = layers[static_cast<std::size_t>(a.layer)];
       for (int x = 0; x < width; ++x, to += pixel_bytes_) {
-        const double alpha = kind == PlaneKind::f64 ? at.row<const double>(a.plane, 0, y)[x]
-                                                    : static_cast<double>(at.row<const float>(a.plane, 0, y)[x]);
+        const double alpha = kind == PlaneKind::f64
+                                 ? at.row<const double>(a.plane, 0, y)[x]
+                                 : static_cast<double>(at.row<const float>(a.plane, 0, y)[x]);
         const double v = static_cast<double>(from[x]);
         store_as(channel.type, static_cast<float>(alpha > 0 ? v / alpha : v), to);
       }
       return;
     }
-    for (int x = 0; x < width; ++x, to += pixel_bytes_) store_as(channel.type, static_cast<float>(from[x]), to);
+    for (int x = 0; x < width; ++x, to += pixel_bytes_)
+      store_as(channel.type, static_cast<float>(from[x]), to);
   }
 
   SinkPlan plan_;

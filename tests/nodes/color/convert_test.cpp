@@ -25,9 +25,12 @@ Image picture(std::string space, Alpha alpha = Alpha::premultiplied, int samples
     pattern->samples = samples;
     pattern->x.assign(static_cast<std::size_t>(samples), 2048), pattern->y = pattern->x;
   }
-  const Raster r(Frame{.window = {-5, 3, 32, 30}, .pattern = pattern,
-                       .planes = {{"Z"}, {"R", real}, {"A", real}, {"B", real}, {"G", real}, {"id", PlaneKind::u32}},
-                       .color_space = std::move(space), .alpha = alpha});
+  const Raster r(
+      Frame{.window = {-5, 3, 32, 30},
+            .pattern = pattern,
+            .planes = {{"Z"}, {"R", real}, {"A", real}, {"B", real}, {"G", real}, {"id", PlaneKind::u32}},
+            .color_space = std::move(space),
+            .alpha = alpha});
   test::Random random(5);
   const Tile t = r.view();
   for (int s = 0; s < samples; ++s)
@@ -36,8 +39,10 @@ Image picture(std::string space, Alpha alpha = Alpha::premultiplied, int samples
         const double a = x % 5 == 0 ? 0 : x % 3 == 0 ? 1 : random.uniform(0.01, 1);
         for (int p = 0; p < 5; ++p) {
           const double v = p == 2 ? a : random.uniform(-0.1, 1.5) * (x % 5 == 0 ? 1 : a);
-          if (p == 0) t.row<float>(p, s, y)[x] = static_cast<float>(v);
-          else t.row<R>(p, s, y)[x] = static_cast<R>(v);
+          if (p == 0)
+            t.row<float>(p, s, y)[x] = static_cast<float>(v);
+          else
+            t.row<R>(p, s, y)[x] = static_cast<R>(v);
         }
         t.row<std::uint32_t>(5, s, y)[x] = static_cast<std::uint32_t>(random.bits());
       }
@@ -71,7 +76,8 @@ TEST(Convert, EncodesColoursWithoutTheirAlphaAndPassesTheRest) {
 
 TEST(Convert, StraightAlphaAndMatricesNeedNoDividing) {
   const Image straight = picture<float>("lin_rec709", Alpha::straight);
-  EXPECT_NEAR(convert(straight, R"({"to": "srgb"})").whole().value(1, 0, 2, 5), srgb(straight.raster.value(1, 0, 2, 5)), 1e-6);
+  EXPECT_NEAR(convert(straight, R"({"to": "srgb"})").whole().value(1, 0, 2, 5),
+              srgb(straight.raster.value(1, 0, 2, 5)), 1e-6);
   const Image in = picture<float>("lin_rec709");
   const Raster out = convert(in, R"({"to": "lin_p3d65"})").whole();
   const double want = 0.82246197 * in.raster.value(1, 0, 2, 5) + 0.17753803 * in.raster.value(4, 0, 2, 5);
@@ -81,13 +87,17 @@ TEST(Convert, StraightAlphaAndMatricesNeedNoDividing) {
 TEST(Convert, IdentityPassesEveryBit) {
   Image in = picture<float>("srgb");
   in.raster.view().row<float>(1, 0, 3)[0] = std::nanf("7");
-  for (const char* params : {R"({"to": "srgb"})", R"({"to": "raw"})", R"({"to": "acescg", "from": "ACEScg"})"})
+  for (const char* params :
+       {R"({"to": "srgb"})", R"({"to": "raw"})", R"({"to": "acescg", "from": "ACEScg"})"})
     EXPECT_EQ(test::first_difference(convert(in, params).whole(), in.raster), "") << params;
 }
 
 TEST(Convert, KeepsTheLawOfTiles) {
-  for (const char* params : {R"({"to": "srgb"})", R"({"to": "rec2020"})", R"({"to": "srgb", "engine": "ocio"})"}) {
-    EXPECT_EQ(test::break_of_tile_law(convert(picture<float>("lin_rec709", Alpha::premultiplied, 3), params)), "") << params;
+  for (const char* params :
+       {R"({"to": "srgb"})", R"({"to": "rec2020"})", R"({"to": "srgb", "engine": "ocio"})"}) {
+    EXPECT_EQ(test::break_of_tile_law(convert(picture<float>("lin_rec709", Alpha::premultiplied, 3), params)),
+              "")
+        << params;
     EXPECT_EQ(test::break_of_tile_law(convert(picture<double>("acescg"), params)), "") << params;
   }
 }
@@ -104,25 +114,32 @@ TEST(Convert, DoublesKeepTheirDigits) {
   const Image in = picture<double>("srgb");
   const Raster out = convert(in, R"({"to": "lin_rec709"})").whole();
   const double v = in.raster.value(1, 0, 2, 5) / in.raster.value(2, 0, 2, 5);
-  const double want = (std::abs(v) <= 0.04045 ? std::abs(v) / 12.92 : std::pow((std::abs(v) + 0.055) / 1.055, 2.4)) * in.raster.value(2, 0, 2, 5);
+  const double want =
+      (std::abs(v) <= 0.04045 ? std::abs(v) / 12.92 : std::pow((std::abs(v) + 0.055) / 1.055, 2.4)) *
+      in.raster.value(2, 0, 2, 5);
   EXPECT_NEAR(std::abs(out.value(1, 0, 2, 5)), want, 1e-15);
 }
 
 TEST(Convert, OpenColorIoGivesNearlyTheSame) {
   const Image in = picture<float>("acescg");
-  const Raster ours = convert(in, R"({"to": "srgb"})").whole(), theirs = convert(in, R"({"to": "srgb", "engine": "ocio"})").whole();
+  const Raster ours = convert(in, R"({"to": "srgb"})").whole(),
+               theirs = convert(in, R"({"to": "srgb", "engine": "ocio"})").whole();
   double worst = 0;
   for (int y = 3; y < 30; ++y)
     for (int x = -5; x < 32; ++x)
-      for (const int p : {1, 3, 4}) worst = std::max(worst, std::abs(ours.value(p, 0, x, y) - theirs.value(p, 0, x, y)));
+      for (const int p : {1, 3, 4})
+        worst = std::max(worst, std::abs(ours.value(p, 0, x, y) - theirs.value(p, 0, x, y)));
   EXPECT_LT(worst, 2e-5);
   EXPECT_GT(worst, 0) << "two engines, not one";
 }
 
 TEST(Convert, StartsFromTheSpaceOfTheImageOrLinear) {
-  const Image none = picture<float>(""), linear = picture<float>("lin_rec709"), acescg = picture<float>("acescg");
+  const Image none = picture<float>(""), linear = picture<float>("lin_rec709"),
+              acescg = picture<float>("acescg");
   EXPECT_EQ(test::first_difference(convert(none, "{}").whole(), convert(linear, "{}").whole()), "");
-  EXPECT_EQ(test::first_difference(convert(linear, R"({"from": "acescg"})").whole(), convert(acescg, "{}").whole()), "");
+  EXPECT_EQ(
+      test::first_difference(convert(linear, R"({"from": "acescg"})").whole(), convert(acescg, "{}").whole()),
+      "");
 }
 
 TEST(Convert, NaNStaysWhereItIs) {
@@ -144,7 +161,8 @@ std::pair<std::string, std::string> problem(const Image& image, std::string_view
 
 TEST(Convert, SaysWhatItDoesNotKnow) {
   EXPECT_EQ(problem(picture<float>("lin_rec709"), R"({"to": "srbg"})").first, "unknown_color_space");
-  EXPECT_THAT(problem(picture<float>("lin_rec709"), R"({"to": "acesgc"})").second, HasSubstr("did you mean 'acescg'?"));
+  EXPECT_THAT(problem(picture<float>("lin_rec709"), R"({"to": "acesgc"})").second,
+              HasSubstr("did you mean 'acescg'?"));
   EXPECT_EQ(problem(picture<float>("house_log"), "{}").first, "unknown_color_space");
   const Image depth{Raster(Frame{.window = {0, 0, 2, 2}, .planes = {{"Z"}}})};
   EXPECT_EQ(problem(depth, "{}").first, "missing_plane");

@@ -7,9 +7,9 @@
 #include "tests/support/temp_file.h"
 
 #include <gmock/gmock.h>
+#include <tbb/global_control.h>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
-#include <tbb/global_control.h>
 
 #include <cmath>
 
@@ -48,7 +48,8 @@ std::vector<glm::vec3> column3(const Mesh& m, std::string_view name) {
 
 TEST(LoadMesh, ReadsWhatAFileSays) {
   const Mesh m = read(
-      "# a square\r\nmtllib a.mtl\r\no square\nv 0 0 0\nv +1 0 0 1.0\nv 1 1e0 .0\nv 0 1 0\nvt 0.25\nvt 1 0\nvt 1 1 0\nvt 0 1\n"
+      "# a square\r\nmtllib a.mtl\r\no square\nv 0 0 0\nv +1 0 0 1.0\nv 1 1e0 .0\nv 0 1 0\nvt 0.25\nvt 1 "
+      "0\nvt 1 1 0\nvt 0 1\n"
       "vn 0 0 2\nusemtl red paint \nf 1/1/1 2/2/1 3/3/1 4/4/1 # a quad\n");
   EXPECT_EQ(column3(m, "position"), (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
   EXPECT_EQ(faces(m), (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}}));
@@ -60,10 +61,12 @@ TEST(LoadMesh, ReadsWhatAFileSays) {
 
 TEST(LoadMesh, KeepsOneVertexForEachTripleInTheOrderOfPositions) {
   // Two triangles that share an edge; at v 2 they have different texture coordinates: a seam.
-  const Mesh m = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0.5 0.5\nvn 0 0 1\n"
-                      "f 2/3/1 5/1/1 3/1/1\nf 1/1/1 2/2/1 3/1/1\n");
+  const Mesh m = read(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0.5 0.5\nvn 0 0 1\n"
+      "f 2/3/1 5/1/1 3/1/1\nf 1/1/1 2/2/1 3/1/1\n");
   // v 4 is used by no face: positions 1, 2, 2, 3, 5.
-  EXPECT_EQ(column3(m, "position"), (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
+  EXPECT_EQ(column3(m, "position"),
+            (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
   EXPECT_EQ(faces(m), (std::vector<glm::uvec3>{{1, 4, 3}, {0, 2, 3}}));
   EXPECT_EQ(m.at("uv").values<glm::vec2>()[1], glm::vec2(0.5f));
   EXPECT_EQ(m.at("uv").values<glm::vec2>()[2], glm::vec2(1, 0));
@@ -75,7 +78,8 @@ TEST(LoadMesh, NegativeIndicesCountBackwardsFromTheirLine) {
 }
 
 TEST(LoadMesh, LinesMayBeContinued) {
-  EXPECT_EQ(faces(read("v 0 0 0\nv 1 \\\n 0 0\nv 0 1 0\nf 1 \\\r\n 2 3\n")), (std::vector<glm::uvec3>{{0, 1, 2}}));
+  EXPECT_EQ(faces(read("v 0 0 0\nv 1 \\\n 0 0\nv 0 1 0\nf 1 \\\r\n 2 3\n")),
+            (std::vector<glm::uvec3>{{0, 1, 2}}));
 }
 
 TEST(LoadMesh, NormalsThatAreMissingAreWeightedByArea) {
@@ -114,9 +118,12 @@ TEST(LoadMesh, DoublePrecisionKeepsEveryDigitAndSingleRoundsOnce) {
 }
 
 TEST(LoadMesh, MaterialsFollowUsemtlAcrossFaces) {
-  const Mesh m = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nusemtl a\nf 1 2 3 4\nusemtl b\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+  const Mesh m = read(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nusemtl a\nf 1 2 3 4\nusemtl b\nusemtl a\nf 1 2 3\nusemtl "
+      "b\nf 1 2 3\n");
   const auto ids = m.at("material").values<std::uint32_t>();
-  EXPECT_EQ((std::vector<std::uint32_t>(ids.begin(), ids.end())), (std::vector<std::uint32_t>{0, 1, 1, 1, 2}));
+  EXPECT_EQ((std::vector<std::uint32_t>(ids.begin(), ids.end())),
+            (std::vector<std::uint32_t>{0, 1, 1, 1, 2}));
   EXPECT_EQ(m.materials->materials[0].name, "");
   EXPECT_EQ(m.materials->materials[2].name, "b");
 }
@@ -136,7 +143,8 @@ TEST(LoadMesh, NamesTheLineThatIsWrong) {
   EXPECT_THAT(problem(v + "f 1 2 x\n"), HasSubstr("m.obj:4: 'x' is not a corner"));
   EXPECT_THAT(problem(v + "f 1 2 0\n"), HasSubstr("m.obj:4: '0' is not a corner"));
   EXPECT_THAT(problem(v + "f 1 2 3/\n"), HasSubstr("'3/' is not a corner"));
-  EXPECT_THAT(problem(v + "\nf 1 2 3\nf 1 2 4\n"), HasSubstr("m.obj:6: a corner names what is not there: the file has 3 v, 0 vt"));
+  EXPECT_THAT(problem(v + "\nf 1 2 3\nf 1 2 4\n"),
+              HasSubstr("m.obj:6: a corner names what is not there: the file has 3 v, 0 vt"));
   EXPECT_THAT(problem(v + "f 1 2 3\nf 1 2 -4\n"), HasSubstr("m.obj:5: a corner names"));
   EXPECT_THAT(problem(v + "f 1/1 2/1 3/1\n"), HasSubstr("m.obj:4: a corner names"));
   EXPECT_THAT(problem(v + "f 1 2 99999999999\n"), HasSubstr("is not a corner"));
@@ -144,7 +152,8 @@ TEST(LoadMesh, NamesTheLineThatIsWrong) {
   EXPECT_THAT(problem("v 1 2 nan\n"), HasSubstr("'nan' is not a finite number"));
   EXPECT_THAT(problem("v 1 2 1e999\n"), HasSubstr("'1e999' is not a finite number"));
   EXPECT_THAT(problem("v 1 2 3x\n"), HasSubstr("'3x' is not a finite number"));
-  EXPECT_THAT(problem(std::string("\x89PNG\r\n\x1a\n\0\0", 10)), HasSubstr("m.obj:1: '?PNG' is not a statement"));
+  EXPECT_THAT(problem(std::string("\x89PNG\r\n\x1a\n\0\0", 10)),
+              HasSubstr("m.obj:1: '?PNG' is not a statement"));
 }
 
 TEST(LoadMesh, SkipsAndNamesStatementsThatSayNothingAboutTriangles) {
@@ -161,7 +170,9 @@ TEST(LoadMesh, ChunksBreakAtLineEndsOnly) {
     std::string joined;
     for (const std::string_view piece : obj::split_lines(text, size)) {
       joined += piece;
-      EXPECT_TRUE(joined.size() == text.size() || (joined.back() == '\n' && joined[joined.size() - 2] != '\\')) << size;
+      EXPECT_TRUE(joined.size() == text.size() ||
+                  (joined.back() == '\n' && joined[joined.size() - 2] != '\\'))
+          << size;
     }
     EXPECT_EQ(joined, text);
   }
@@ -173,7 +184,8 @@ std::string large() {
   for (int i = 0; i < 60'000; ++i) {
     const std::string x = std::to_string(i);
     text += "v " + x + " 0 0.5\nv " + x + " 1 0\nv " + x + ".5 1 0\nv " + x + ".5 0 0\nvt 0." + x + " 0\n";
-    text += "f -4/-1 -3/-1 -2/-1 -1/-1\nf 1/1 " + std::to_string(4 * i + 2) + "/1 " + std::to_string(4 * i + 3) + "/" + std::to_string(i + 1) + "\n";
+    text += "f -4/-1 -3/-1 -2/-1 -1/-1\nf 1/1 " + std::to_string(4 * i + 2) + "/1 " +
+            std::to_string(4 * i + 3) + "/" + std::to_string(i + 1) + "\n";
   }
   return text;
 }
@@ -204,7 +216,8 @@ TEST(LoadMesh, CancellingEndsIt) {
   EXPECT_THROW(read(large(), ctx), Cancelled);
 }
 
-double area(std::span<const glm::dvec3> p, const std::vector<std::array<std::uint32_t, 3>>& triangles, double& smallest) {
+double area(std::span<const glm::dvec3> p, const std::vector<std::array<std::uint32_t, 3>>& triangles,
+            double& smallest) {
   double sum = 0;
   for (const auto& t : triangles) {
     const double a = glm::cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]).z / 2;
@@ -214,9 +227,11 @@ double area(std::span<const glm::dvec3> p, const std::vector<std::array<std::uin
 }
 
 TEST(Triangulate, TilesAPolygonThatIsNotConvex) {
-  // A chevron, and an L; from every starting corner all triangles face up and their areas sum to the polygon's.
-  const std::vector<std::vector<glm::dvec3>> shapes{{{0, 0, 0}, {2, 2, 0}, {0, 1, 0}, {-2, 2, 0}},
-                                                    {{0, 0, 0}, {3, 0, 0}, {3, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}}};
+  // A chevron, and an L; from every starting corner all triangles face up and their areas sum to the
+  // polygon's.
+  const std::vector<std::vector<glm::dvec3>> shapes{
+      {{0, 0, 0}, {2, 2, 0}, {0, 1, 0}, {-2, 2, 0}},
+      {{0, 0, 0}, {3, 0, 0}, {3, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}}};
   const double areas[] = {2, 5};
   for (std::size_t s = 0; s < shapes.size(); ++s)
     for (std::size_t start = 0; start < shapes[s].size(); ++start) {
@@ -237,7 +252,8 @@ TEST(Triangulate, SaysWhereItHadToGuess) {
   EXPECT_EQ(triangles.size(), 2u);
 }
 
-// The example's house: 2 pentagons and 5 quads; closed and wound outwards, so the volume is 2 x 3 x 2 + 2 x 3 x 1 / 2.
+// The example's house: 2 pentagons and 5 quads; closed and wound outwards, so the volume is 2 x 3 x 2 + 2 x
+// 3 x 1 / 2.
 TEST(LoadMesh, TheHouseHasItsVolume) {
   const auto out = test::run_node(nodes::io_load_mesh(), {{"file", "house.obj"}}, {}, nullptr,
                                   std::string(FRUSTUM_SOURCE_DIR) + "/graphs/data");
@@ -247,17 +263,24 @@ TEST(LoadMesh, TheHouseHasItsVolume) {
   EXPECT_EQ(m.materials->materials.size(), 3u);
   const auto p = column3(m, "position");
   double volume = 0;
-  for (const glm::uvec3& t : m.triangles()) volume += glm::dot(glm::dvec3(p[t.x]), glm::cross(glm::dvec3(p[t.y]), glm::dvec3(p[t.z]))) / 6;
+  for (const glm::uvec3& t : m.triangles())
+    volume += glm::dot(glm::dvec3(p[t.x]), glm::cross(glm::dvec3(p[t.y]), glm::dvec3(p[t.z]))) / 6;
   EXPECT_DOUBLE_EQ(volume, 15);
 }
 
 TEST(LoadMesh, ReadsOtherThanObjNot) {
   const test::TempFolder folder;
   folder.write("m.ply", "ply\n");
-  EXPECT_EQ(test::run_error(nodes::io_load_mesh(), {{"file", "m.ply"}}, {}, folder.path()).first, "unknown_format");
-  EXPECT_EQ(test::run_error(nodes::io_load_mesh(), {{"file", "m.obj"}}, {}, folder.path()).first, "cannot_read_file");
+  EXPECT_EQ(test::run_error(nodes::io_load_mesh(), {{"file", "m.ply"}}, {}, folder.path()).first,
+            "unknown_format");
+  EXPECT_EQ(test::run_error(nodes::io_load_mesh(), {{"file", "m.obj"}}, {}, folder.path()).first,
+            "cannot_read_file");
   folder.write("M.OBJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3");
-  EXPECT_EQ(test::run_node(nodes::io_load_mesh(), {{"file", "M.OBJ"}}, {}, nullptr, folder.path()).at(0).as<Mesh>()->faces(), 1u);
+  EXPECT_EQ(test::run_node(nodes::io_load_mesh(), {{"file", "M.OBJ"}}, {}, nullptr, folder.path())
+                .at(0)
+                .as<Mesh>()
+                ->faces(),
+            1u);
 }
 
 }  // namespace

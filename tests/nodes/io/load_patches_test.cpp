@@ -28,8 +28,8 @@ using Edge = std::array<std::uint32_t, 4>;
 
 // The four boundary rows of a patch, each in the direction that makes equal rows equal.
 std::array<Edge, 4> boundaries(const std::array<std::uint32_t, 16>& p) {
-  std::array<Edge, 4> all{Edge{p[0], p[1], p[2], p[3]}, Edge{p[12], p[13], p[14], p[15]}, Edge{p[0], p[4], p[8], p[12]},
-                          Edge{p[3], p[7], p[11], p[15]}};
+  std::array<Edge, 4> all{Edge{p[0], p[1], p[2], p[3]}, Edge{p[12], p[13], p[14], p[15]},
+                          Edge{p[0], p[4], p[8], p[12]}, Edge{p[3], p[7], p[11], p[15]}};
   for (Edge& e : all) e = std::min(e, Edge{e[3], e[2], e[1], e[0]});
   return all;
 }
@@ -50,7 +50,8 @@ TEST(LoadPatches, TeapotHas32PatchesAndEveryPointOnce) {
   EXPECT_EQ(s.space, Space::object);
 }
 
-// 16 open boundaries: 4 each of rim, lid, and 2 at each end of handle and spout; two poles are shared by four patches.
+// 16 open boundaries: 4 each of rim, lid, and 2 at each end of handle and spout; two poles are shared by
+// four patches.
 TEST(LoadPatches, TeapotSharesBoundariesByIndex) {
   std::map<Edge, int> uses;
   for (const auto& patch : teapot().patches)
@@ -77,13 +78,15 @@ TEST(LoadPatches, TeapotPatchesFaceOutwards) {
 }
 
 TEST(LoadPatches, NoPatchesAreAnEmptySurface) {
-  EXPECT_TRUE(parse_patches(R"({"format": "frustum.patches/1", "points": [], "patches": []})", "x").patches.empty());
+  EXPECT_TRUE(
+      parse_patches(R"({"format": "frustum.patches/1", "points": [], "patches": []})", "x").patches.empty());
 }
 
 std::string problem(const std::string& text) {
   const test::TempFolder folder;
   folder.write("p.json", text);
-  const auto [code, message] = test::run_error(nodes::io_load_patches(), {{"file", "p.json"}}, {}, folder.path());
+  const auto [code, message] =
+      test::run_error(nodes::io_load_patches(), {{"file", "p.json"}}, {}, folder.path());
   EXPECT_EQ(code, "malformed_file");
   return message;
 }
@@ -96,16 +99,21 @@ TEST(LoadPatches, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(problem("{\n\"points\": [1,\n"), HasSubstr("p.json:3: this is not JSON"));
   EXPECT_THAT(problem(""), HasSubstr("p.json:1: this is not JSON"));
   EXPECT_THAT(problem("[]"), HasSubstr("must be an object"));
-  EXPECT_THAT(problem(R"({"format": "frustum.patches/2", "points": [], "patches": []})"), HasSubstr("/format: this must be"));
-  EXPECT_THAT(problem(R"({"format": "frustum.patches/1", "patches": []})"), HasSubstr("there is no \"points\""));
-  EXPECT_THAT(problem(R"({"format": "frustum.patches/1", "pionts": []})"), HasSubstr("\"pionts\" is not a key"));
+  EXPECT_THAT(problem(R"({"format": "frustum.patches/2", "points": [], "patches": []})"),
+              HasSubstr("/format: this must be"));
+  EXPECT_THAT(problem(R"({"format": "frustum.patches/1", "patches": []})"),
+              HasSubstr("there is no \"points\""));
+  EXPECT_THAT(problem(R"({"format": "frustum.patches/1", "pionts": []})"),
+              HasSubstr("\"pionts\" is not a key"));
   EXPECT_THAT(problem(file_with("[[1, 2]]", "[]")), HasSubstr("/points/0: a point is an array of 3 numbers"));
   EXPECT_THAT(problem(file_with("[[1, 2, null]]", "[]")), HasSubstr("/points/0/2: this must be a number"));
   EXPECT_THAT(problem(file_with("[[1, 2, 1e999]]", "[]")), HasSubstr("too large"));
-  EXPECT_THAT(problem(file_with("[[1, 2, 3]]", "[[0]]")), HasSubstr("/patches/0: a patch is an array of 16 indices"));
+  EXPECT_THAT(problem(file_with("[[1, 2, 3]]", "[[0]]")),
+              HasSubstr("/patches/0: a patch is an array of 16 indices"));
   EXPECT_THAT(problem(file_with("[[1, 2, 3]]", "[[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1]]")),
               HasSubstr("/patches/0/15: 1 is not the index of one of the 1 points"));
-  EXPECT_THAT(problem(file_with("[[1, 2, 3]]", "[[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,-1]]")), HasSubstr("-1 is not the index"));
+  EXPECT_THAT(problem(file_with("[[1, 2, 3]]", "[[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,-1]]")),
+              HasSubstr("-1 is not the index"));
   EXPECT_THAT(problem(std::string(100'000, '[')), HasSubstr("not JSON"));
 }
 
@@ -114,7 +122,8 @@ TEST(LoadPatches, AFileThatIsNotThereIsAnErrorOfTheWorld) {
   const auto missing = test::run_error(nodes::io_load_patches(), {{"file", "none.json"}}, {}, folder.path());
   EXPECT_EQ(missing.first, "cannot_read_file");
   EXPECT_THAT(missing.second, HasSubstr("cannot read none.json: No such file"));
-  EXPECT_EQ(test::run_error(nodes::io_load_patches(), {{"file", "."}}, {}, folder.path()).first, "cannot_read_file");
+  EXPECT_EQ(test::run_error(nodes::io_load_patches(), {{"file", "."}}, {}, folder.path()).first,
+            "cannot_read_file");
   EXPECT_EQ(test::run_error(nodes::io_load_patches(), Json::object()).first, "no_file");
 }
 

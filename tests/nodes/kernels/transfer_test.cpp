@@ -19,8 +19,12 @@ constexpr Curve curves[] = {Curve::linear, Curve::srgb, Curve::rec709, Curve::ad
 long double encoded(Curve c, long double v) {
   const CurveShape s = shape_of(c);
   const long double a = std::fabs(v);
-  const long double e = c == Curve::linear ? a : a <= static_cast<long double>(s.knee) ? static_cast<long double>(s.slope) * a
-                        : static_cast<long double>(s.scale) * std::pow(a, 1 / static_cast<long double>(s.gamma)) - static_cast<long double>(s.offset);
+  const long double e =
+      c == Curve::linear ? a
+      : a <= static_cast<long double>(s.knee)
+          ? static_cast<long double>(s.slope) * a
+          : static_cast<long double>(s.scale) * std::pow(a, 1 / static_cast<long double>(s.gamma)) -
+                static_cast<long double>(s.offset);
   return v < 0 ? -e : e;
 }
 
@@ -49,8 +53,8 @@ TEST(Transfer, HasTheErrorThatIsStated) {
 TEST(Transfer, MeetsTheStandardsAtTheirPoints) {
   EXPECT_EQ(encode(Curve::srgb, 0.0), 0);
   EXPECT_NEAR(encode(Curve::srgb, 1.0), 1, 2e-16);
-  EXPECT_NEAR(encode(Curve::srgb, 0.5), 0.735356983052, 1e-12);    // 1.055 * 0.5^(1/2.4) - 0.055
-  EXPECT_NEAR(decode(Curve::srgb, 0.5), 0.214041140482, 1e-12);    // ((0.5 + 0.055) / 1.055)^2.4
+  EXPECT_NEAR(encode(Curve::srgb, 0.5), 0.735356983052, 1e-12);  // 1.055 * 0.5^(1/2.4) - 0.055
+  EXPECT_NEAR(decode(Curve::srgb, 0.5), 0.214041140482, 1e-12);  // ((0.5 + 0.055) / 1.055)^2.4
   EXPECT_NEAR(encode(Curve::srgb, 0.0031308), 0.04044993600, 1e-10);
   EXPECT_NEAR(encode(Curve::rec709, 0.018), 0.081, 1e-12);
   EXPECT_NEAR(encode(Curve::rec709, 1.0), 1, 1e-14);
@@ -71,7 +75,8 @@ TEST(Transfer, CurvesAreOddAndPassWhatIsNotFinite) {
 
 TEST(Transfer, Rec709IsSmoothAtItsKnee) {
   const CurveShape s = shape_of(Curve::rec709);
-  const double h = 1e-6, below = encode(Curve::rec709, s.knee - h), at = encode(Curve::rec709, s.knee), above = encode(Curve::rec709, s.knee + h);
+  const double h = 1e-6, below = encode(Curve::rec709, s.knee - h), at = encode(Curve::rec709, s.knee),
+               above = encode(Curve::rec709, s.knee + h);
   EXPECT_NEAR((above - at) / h, (at - below) / h, 1e-4);
 }
 
@@ -83,11 +88,15 @@ TEST_P(TransferOnTarget, HasTheScalarBits) {
   for (const Curve from : curves)
     for (const Curve to : curves)
       for (const bool same : {false, true}) {
-        ColorMap map{.from = from, .to = to, .same_primaries = same, .matrix = {0.6, 0.3, 0.1, -0.05, 1.1, -0.05, 0.02, 0.08, 0.9}};
+        ColorMap map{.from = from,
+                     .to = to,
+                     .same_primaries = same,
+                     .matrix = {0.6, 0.3, 0.1, -0.05, 1.1, -0.05, 0.02, 0.08, 0.9}};
         for (const std::size_t n : {1u, 7u, 64u, 301u}) {
           std::vector<float> a[3], b[3];
           for (int k = 0; k < 3; ++k) {
-            for (std::size_t i = 0; i < n; ++i) a[k].push_back(static_cast<float>(i % 3 != 0 ? random.uniform() : random.magnitude(-30, 10)));
+            for (std::size_t i = 0; i < n; ++i)
+              a[k].push_back(static_cast<float>(i % 3 != 0 ? random.uniform() : random.magnitude(-30, 10)));
             if (n > 6) a[k][3] = std::numeric_limits<float>::infinity(), a[k][5] = -0.0f, a[k][6] = 1e-40f;
             if (n > 6 && k == 1) a[k][4] = std::numeric_limits<float>::quiet_NaN();
             b[k] = a[k];

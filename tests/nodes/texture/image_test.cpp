@@ -7,8 +7,8 @@
 #include "tests/support/ulps.h"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -16,7 +16,8 @@ namespace frustum {
 namespace {
 
 Image constant(Rect window, PlaneList planes, std::vector<float> values, std::string space, Alpha alpha) {
-  const Raster r(Frame{.window = window, .planes = std::move(planes), .color_space = std::move(space), .alpha = alpha});
+  const Raster r(
+      Frame{.window = window, .planes = std::move(planes), .color_space = std::move(space), .alpha = alpha});
   for (int p = 0; p < static_cast<int>(values.size()); ++p)
     for (int y = window.y0; y < window.y1; ++y)
       std::fill_n(r.view().row<float>(p, 0, y), window.width(), values[static_cast<std::size_t>(p)]);
@@ -24,7 +25,8 @@ Image constant(Rect window, PlaneList planes, std::vector<float> values, std::st
 }
 
 MipPyramid texture_of(Image image, const Json& params = Json::object()) {
-  const auto out = test::run_node(nodes::texture_image(), params, {{std::make_shared<const Image>(std::move(image))}});
+  const auto out =
+      test::run_node(nodes::texture_image(), params, {{std::make_shared<const Image>(std::move(image))}});
   return std::get<MipPyramid>(out.at(0).as<Texture>()->source);
 }
 
@@ -46,7 +48,8 @@ TEST(TextureImage, CellsCoverEveryTexelOnce) {
 }
 
 TEST(TextureImage, HalvesByArea) {
-  const float row[] = {1, 0, 0, 1, 2, 0, 0, 1, 6, 0, 0, 1, 8, 0, 0, 1, 3, 0, 0, 1};  // five texels, R = 1 2 6 8 3
+  const float row[] = {1, 0, 0, 1, 2, 0, 0, 1, 6, 0,
+                       0, 1, 8, 0, 0, 1, 3, 0, 0, 1};  // five texels, R = 1 2 6 8 3
   float out[8];
   halve_row(row, 5, 1, 0, out);
   EXPECT_FLOAT_EQ(out[0], (1 + 2 + 6 * 0.5f) / 2.5f);
@@ -55,11 +58,13 @@ TEST(TextureImage, HalvesByArea) {
 }
 
 TEST(TextureImage, EveryLevelKeepsTheMean) {
-  const Raster r(Frame{.window = {3, -2, 24, 11}, .planes = {{"R"}, {"G"}, {"B"}}, .color_space = "lin_rec709"});
+  const Raster r(
+      Frame{.window = {3, -2, 24, 11}, .planes = {{"R"}, {"G"}, {"B"}}, .color_space = "lin_rec709"});
   test::Random random(3);
   double sum = 0;
   for (int y = -2; y < 11; ++y)
-    for (int x = 0; x < 21; ++x) sum += static_cast<double>(r.view().row<float>(0, 0, y)[x] = static_cast<float>(random.uniform()));
+    for (int x = 0; x < 21; ++x)
+      sum += static_cast<double>(r.view().row<float>(0, 0, y)[x] = static_cast<float>(random.uniform()));
   const MipPyramid p = texture_of({r});
   ASSERT_EQ(p.levels.size(), 5u);
   const int sizes[5][2] = {{21, 13}, {10, 6}, {5, 3}, {2, 1}, {1, 1}};
@@ -67,7 +72,8 @@ TEST(TextureImage, EveryLevelKeepsTheMean) {
     EXPECT_EQ(p.levels[l].width, sizes[l][0]);
     EXPECT_EQ(p.levels[l].height, sizes[l][1]);
     double mean = 0;
-    for (std::size_t i = 0; i < p.levels[l].rgba.size(); i += 4) mean += static_cast<double>(p.levels[l].rgba[i]);
+    for (std::size_t i = 0; i < p.levels[l].rgba.size(); i += 4)
+      mean += static_cast<double>(p.levels[l].rgba[i]);
     EXPECT_NEAR(mean * 4 / static_cast<double>(p.levels[l].rgba.size()), sum / (21 * 13), 1e-6) << l;
     EXPECT_EQ(p.levels[l].rgba[3], 1) << "no A means opaque";
   }
@@ -77,14 +83,19 @@ TEST(TextureImage, BecomesLinearWithoutItsAlpha) {
   // sRGB 0.5 is 0.21404 linear; premultiplied by 1/4 it is stored as 0.125.
   const float linear = 0.21404114f;
   const PlaneList rgba{{"R"}, {"G"}, {"B"}, {"A"}};
-  const MipPyramid premultiplied = texture_of(constant({0, 0, 2, 2}, rgba, {0.125f, 0.125f, 0.125f, 0.25f}, "srgb", Alpha::premultiplied));
-  const MipPyramid straight = texture_of(constant({0, 0, 2, 2}, rgba, {0.5f, 0.5f, 0.5f, 0.25f}, "srgb", Alpha::straight));
+  const MipPyramid premultiplied =
+      texture_of(constant({0, 0, 2, 2}, rgba, {0.125f, 0.125f, 0.125f, 0.25f}, "srgb", Alpha::premultiplied));
+  const MipPyramid straight =
+      texture_of(constant({0, 0, 2, 2}, rgba, {0.5f, 0.5f, 0.5f, 0.25f}, "srgb", Alpha::straight));
   for (const MipPyramid* p : {&premultiplied, &straight})
     for (const auto& level : p->levels) {
       EXPECT_NEAR(level.rgba[0], linear * 0.25f, 1e-7);
       EXPECT_EQ(level.rgba[3], 0.25f);
     }
-  EXPECT_EQ(texture_of(constant({0, 0, 2, 2}, rgba, {0.125f, 0, 0, 0.25f}, "", Alpha::premultiplied)).levels[0].rgba[0], 0.125f);
+  EXPECT_EQ(texture_of(constant({0, 0, 2, 2}, rgba, {0.125f, 0, 0, 0.25f}, "", Alpha::premultiplied))
+                .levels[0]
+                .rgba[0],
+            0.125f);
 }
 
 TEST(TextureImage, OnePlaneIsGreyAndTheTopRowComesFirst) {
@@ -98,7 +109,8 @@ TEST(TextureImage, OnePlaneIsGreyAndTheTopRowComesFirst) {
 }
 
 TEST(TextureImage, TheNumberOfThreadsDoesNotShow) {
-  const auto card = test::run_node(nodes::io_load_image(), {{"file", "card.png"}}, {}, nullptr, std::string(FRUSTUM_SOURCE_DIR) + "/graphs/data");
+  const auto card = test::run_node(nodes::io_load_image(), {{"file", "card.png"}}, {}, nullptr,
+                                   std::string(FRUSTUM_SOURCE_DIR) + "/graphs/data");
   std::vector<Digest> digests;
   for (const std::size_t threads : {1u, 2u, 7u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -109,17 +121,23 @@ TEST(TextureImage, TheNumberOfThreadsDoesNotShow) {
 }
 
 std::string problem(Image image) {
-  return test::run_error(nodes::texture_image(), Json::object(), {{std::make_shared<const Image>(std::move(image))}}).first;
+  return test::run_error(nodes::texture_image(), Json::object(),
+                         {{std::make_shared<const Image>(std::move(image))}})
+      .first;
 }
 
 TEST(TextureImage, RefusesWhatIsNoPicture) {
   EXPECT_EQ(problem({}), "empty_image");
   EXPECT_EQ(problem({Raster(Frame{.window = {0, 0, 1, 1}, .planes = {{"R"}, {"Z"}}})}), "missing_plane");
-  EXPECT_EQ(problem({Raster(Frame{.window = {0, 0, 1, 1}, .planes = {{"id", PlaneKind::u32}}})}), "wrong_plane_kind");
+  EXPECT_EQ(problem({Raster(Frame{.window = {0, 0, 1, 1}, .planes = {{"id", PlaneKind::u32}}})}),
+            "wrong_plane_kind");
   auto four = std::make_shared<SamplePattern>();
   four->samples = 4, four->x.assign(4, 0), four->y.assign(4, 0);
-  EXPECT_EQ(problem({Raster(Frame{.window = {0, 0, 1, 1}, .pattern = four, .planes = {{"R"}, {"G"}, {"B"}}})}), "sampled_image");
-  EXPECT_EQ(problem(constant({0, 0, 1, 1}, {{"R"}, {"G"}, {"B"}}, {0, 0, 0}, "house_log", Alpha::none)), "unknown_color_space");
+  EXPECT_EQ(
+      problem({Raster(Frame{.window = {0, 0, 1, 1}, .pattern = four, .planes = {{"R"}, {"G"}, {"B"}}})}),
+      "sampled_image");
+  EXPECT_EQ(problem(constant({0, 0, 1, 1}, {{"R"}, {"G"}, {"B"}}, {0, 0, 0}, "house_log", Alpha::none)),
+            "unknown_color_space");
 }
 
 }  // namespace
