@@ -123,23 +123,29 @@ void tile(const State& state, const TilesOf<Inputs>& inputs, const TilesOf<Outpu
 }  // namespace
 
 NodeType nodes::color_convert() {
-  return pixel_node("color.convert", prepare, tile)
-      .doc("Converts colours from one colour space to another.")
-      .cite("IEC 61966-2-1:1999; ITU-R BT.709-6, BT.2020-2; Adobe RGB (1998); SMPTE ST 2065-1; OpenColorIO 2")
-      .covers(105)
-      .foreign()
-      .input("image", &Inputs::image,
-             "Planes R, G and B, divided by A where that needs it; other planes pass.")
-      .param("to", &Params::to,
-             "Colour space of the result: srgb, display_p3, rec2020, acescg ... or one of the configuration.")
-      .param("from", &Params::from,
-             "Colour space of the input; empty: the image's own, and lin_rec709 where it has none.")
-      .param("config", &Params::config,
-             "OpenColorIO configuration; empty: the file that $OCIO names, else the embedded one.")
-      .param("engine", &Params::engine,
-             "Who converts between embedded spaces: frustum's exact curves, or OpenColorIO.")
-      .output("image", &Outputs::image,
-              "The same window, samples and planes, in the colour space asked for.");
+  NodeType type =
+      pixel_node("color.convert", prepare, tile)
+          .doc("Converts colours from one colour space to another.")
+          .cite(
+              "IEC 61966-2-1:1999; ITU-R BT.709-6, BT.2020-2; Adobe RGB (1998); SMPTE ST 2065-1; OpenColorIO "
+              "2")
+          .covers(105)
+          .foreign()
+          .input("image", &Inputs::image,
+                 "Planes R, G and B, divided by A where that needs it; other planes pass.")
+          .param("to", &Params::to,
+                 "Colour space of the result: srgb, display_p3, rec2020, acescg ... or one of the "
+                 "configuration.")
+          .param("from", &Params::from,
+                 "Colour space of the input; empty: the image's own, and lin_rec709 where it has none.")
+          .param("config", &Params::config,
+                 "OpenColorIO configuration; empty: the file that $OCIO names, else the embedded one.")
+          .param("engine", &Params::engine,
+                 "Who converts between embedded spaces: frustum's exact curves, or OpenColorIO.")
+          .output("image", &Outputs::image,
+                  "The same window, samples and planes, in the colour space asked for.");
+  depend_on_color_environment(type);
+  return type;
 }
 
 }  // namespace frustum

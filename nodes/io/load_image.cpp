@@ -30,16 +30,19 @@ Outputs run(const Inputs&, const Params& p, Context& ctx) {
 }  // namespace
 
 NodeType nodes::io_load_image() {
-  return node("io.load_image", run)
-      .doc("Reads a picture: PNG, JPEG, EXR, HDR, TIFF and whatever else OpenImageIO knows.")
-      .param("file", &Params::file,
-             "A picture file; its channels become planes, colours stay in the file's space.")
-      .param("subimage", &Params::subimage, "Which part of a file that holds several pictures, from 0.",
-             {.range = at_least(0)})
-      .param("space", &Params::space,
-             "Colour space to take the file's colours as, instead of what the file says.")
-      .output("image", &Outputs::image,
-              "One value a pixel: R G B with premultiplied A, and the file's other channels.");
+  NodeType type =
+      node("io.load_image", run)
+          .doc("Reads a picture: PNG, JPEG, EXR, HDR, TIFF and whatever else OpenImageIO knows.")
+          .param("file", &Params::file,
+                 "A picture file; its channels become planes, colours stay in the file's space.")
+          .param("subimage", &Params::subimage, "Which part of a file that holds several pictures, from 0.",
+                 {.range = at_least(0)})
+          .param("space", &Params::space,
+                 "Colour space to take the file's colours as, instead of what the file says.")
+          .output("image", &Outputs::image,
+                  "One value a pixel: R G B with premultiplied A, and the file's other channels.");
+  depend_on_color_environment(type);
+  return type;
 }
 
 }  // namespace frustum

@@ -118,18 +118,21 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
 }  // namespace
 
 NodeType nodes::texture_image() {
-  return node("texture.image", run)
-      .doc("Makes a texture of an image: linear light, with a pyramid of halves for filtering.")
-      .cite("Williams 1983, Pyramidal parametrics")
-      .covers(30)
-      .foreign()
-      .input("image", &Inputs::image,
-             "R, G, B (or one plane, taken as grey) and A, converted from the image's colour space.")
-      .param("wrap_u", &Params::wrap_u, "What lies beyond u = 0 and 1.")
-      .param("wrap_v", &Params::wrap_v, "What lies beyond v = 0 and 1.")
-      .param("pyramid", &Params::pyramid,
-             "Whether smaller levels are made, which trilinear lookup needs; a third more memory.")
-      .output("texture", &Outputs::texture, "The texture; the top row of the image is at v = 1.");
+  NodeType type =
+      node("texture.image", run)
+          .doc("Makes a texture of an image: linear light, with a pyramid of halves for filtering.")
+          .cite("Williams 1983, Pyramidal parametrics")
+          .covers(30)
+          .foreign()
+          .input("image", &Inputs::image,
+                 "R, G, B (or one plane, taken as grey) and A, converted from the image's colour space.")
+          .param("wrap_u", &Params::wrap_u, "What lies beyond u = 0 and 1.")
+          .param("wrap_v", &Params::wrap_v, "What lies beyond v = 0 and 1.")
+          .param("pyramid", &Params::pyramid,
+                 "Whether smaller levels are made, which trilinear lookup needs; a third more memory.")
+          .output("texture", &Outputs::texture, "The texture; the top row of the image is at v = 1.");
+  depend_on_color_environment(type);
+  return type;
 }
 
 }  // namespace frustum

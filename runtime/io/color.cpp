@@ -3,6 +3,7 @@
 #include "nodes/kernels/simd/transfer.h"
 #include "runtime/core/diagnostic.h"
 #include "runtime/core/error.h"
+#include "runtime/core/node_type.h"
 #include "runtime/io/color_spaces.h"
 
 #include <OpenColorIO/OpenColorIO.h>
@@ -290,6 +291,13 @@ std::string ColorConfig::text() const {
   std::ostringstream out;
   out << *(impl_->embedded() ? embedded_config() : impl_->config);
   return out.str();
+}
+
+void depend_on_color_environment(NodeType& type) {
+  type.params.files = [files = type.params.files](const void* params, const auto& visit) {
+    if (files) files(params, visit);
+    if (const char* named = std::getenv("OCIO"); named != nullptr && *named != '\0') visit({"$OCIO", named});
+  };
 }
 
 bool to_linear_rec709(std::string_view space, glm::dvec3& rgb) {

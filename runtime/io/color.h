@@ -12,6 +12,8 @@
 
 namespace frustum {
 
+class NodeType;
+
 // A way between two spaces that is ready to be applied; copies share it. Safe to use from many threads.
 class ColorConversion {
  public:
@@ -90,6 +92,9 @@ class ColorConfig {
  private:
   std::unique_ptr<Impl> impl_;
 };
+
+// Makes the file that $OCIO names one of the files that a node's results depend on, as if a parameter named it.
+void depend_on_color_environment(NodeType&);
 
 // One colour of the graph's text to linear Rec.709, by the embedded configuration; false where it does not
 // know the space.

@@ -2,7 +2,9 @@
 // configuration.
 #include "runtime/io/color.h"
 
+#include "nodes/all_nodes.h"
 #include "runtime/core/error.h"
+#include "runtime/core/node_type.h"
 #include "runtime/io/color_spaces.h"
 #include "tests/support/temp_file.h"
 
@@ -175,6 +177,28 @@ TEST(Color, TheEnvironmentNamesAConfiguration) {
   else
     unsetenv("OCIO");
   EXPECT_FALSE(ColorConfig::open({})->find("house"));
+}
+
+TEST(Color, ResultsDependOnTheFileThatTheEnvironmentNames) {
+  const NodeType type = nodes::color_convert();
+  const auto params = type.default_params();
+  const auto files = [&] {
+    std::vector<std::string> paths;
+    type.params.files(params.get(), [&](const FilePath& f) { paths.push_back(f.resolved); });
+    return paths;
+  };
+  const char* old = std::getenv("OCIO");
+  const std::string kept = old != nullptr ? old : "";
+  unsetenv("OCIO");
+  const auto without = files();
+  setenv("OCIO", "/some/config.ocio", 1);
+  auto with = files();
+  if (old != nullptr)
+    setenv("OCIO", kept.c_str(), 1);
+  else
+    unsetenv("OCIO");
+  ASSERT_EQ(with.size(), without.size() + 1);
+  EXPECT_EQ(with.back(), "/some/config.ocio");
 }
 
 TEST(Color, AFileThatIsNoConfigurationIsAnError) {
