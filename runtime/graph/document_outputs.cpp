@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <unordered_map>
 
@@ -16,7 +17,7 @@ struct FileFormat {
   std::string_view extension;
   std::vector<int> bits;
   std::vector<std::string> compressions;
-  bool layers;
+  bool layers, quality = false;  // quality: its compression is "quality:N"
 };
 
 const std::vector<FileFormat>& file_formats() {
@@ -27,8 +28,8 @@ const std::vector<FileFormat>& file_formats() {
       {"tif", {16, 8, 32}, tiff, false},
       {"tiff", {16, 8, 32}, tiff, false},
       {"hdr", {32}, {}, false},
-      {"jpg", {8}, {}, false},
-      {"jpeg", {8}, {}, false}};
+      {"jpg", {8}, {}, false, true},
+      {"jpeg", {8}, {}, false, true}};
   return formats;
 }
 
@@ -47,6 +48,15 @@ std::string unknown_placeholder(std::string_view file) {
     at += std::string_view("{frame}").size();
   }
   return {};
+}
+
+// "quality:1" to "quality:100"
+bool is_quality(std::string_view s) {
+  constexpr std::string_view prefix = "quality:";
+  if (!s.starts_with(prefix)) return false;
+  int n = 0;
+  const auto [end, error] = std::from_chars(s.data() + prefix.size(), s.data() + s.size(), n);
+  return error == std::errc() && end == s.data() + s.size() && n >= 1 && n <= 100;
 }
 
 bool leaves_folder(const std::filesystem::path& path) {
@@ -199,12 +209,14 @@ void DocumentReader::check_format(DocumentOutput& output, const Json& j) {
   output.compression = compression->get<std::string>();
   const auto& known = format->compressions;
   if (std::find(known.begin(), known.end(), output.compression) != known.end()) return;
+  if (format->quality && is_quality(output.compression)) return;
+  const std::string expected = format->quality ? "quality:1 to quality:100"
+                               : known.empty() ? "no compression"
+                                               : fmt::format("one of: {}", fmt::join(known, ", "));
   problem({.code = "unknown_choice",
            .pointer = child_pointer(output.pointer, "compression"),
-           .message = known.empty() ? fmt::format("a .{} file has no choice of compression", extension)
-                                    : fmt::format("'{}' is not a compression of .{} files",
-                                                  output.compression, extension),
-           .expected = known.empty() ? "none" : fmt::format("one of: {}", fmt::join(known, ", ")),
+           .message = fmt::format("'{}' is not a compression of .{} files", output.compression, extension),
+           .expected = expected,
            .got = output.compression,
            .suggestions = nearest_names(output.compression, known)});
 }

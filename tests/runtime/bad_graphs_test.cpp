@@ -4,6 +4,8 @@
 // whoever commits it to judge.
 #include "nodes/all_nodes.h"
 #include "runtime/graph/load.h"
+#include "runtime/io/image_files.h"
+#include "runtime/io/sink_plan.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -122,6 +124,49 @@ TEST(GoodGraphs, OfTheDocumentationHaveNoProblem) {
     ++examples;
   }
   EXPECT_EQ(examples, 2);
+}
+
+// What is said of a file before the run is what its writer will do.
+TEST(Outputs, AreCheckedAsTheyAreWritten) {
+  const auto accepted = [](const std::string& extension, int bits, const std::string& compression) {
+    const std::string text =
+        R"({ "format": "frustum.graph/1", "nodes": { "a": { "type": "io.load_image", "params": { "file": "a.exr" } } },
+      "outputs": { "o": { "from": "a", "file": "o.)" +
+        extension + "\"" + (bits != 0 ? ", \"bits\": " + std::to_string(bits) : "") +
+        (compression.empty() ? "" : ", \"compression\": \"" + compression + "\"") + " } } }";
+    return load_graph_text(text, "t.json", registry()).graph.has_value();
+  };
+  const auto written = [](const std::string& extension, int bits, const std::string& compression) {
+    SinkRequest request{.path = "o." + extension,
+                        .region = {0, 0, 4, 4},
+                        .display_window = {0, 0, 4, 4},
+                        .layers = {},
+                        .bits = bits,
+                        .compression = compression,
+                        .metadata = {}};
+    Frame frame;
+    frame.window = request.region;
+    for (const char* plane : {"R", "G", "B"}) frame.planes.push_back({plane, PlaneKind::f32});
+    request.layers.push_back({"", frame});
+    try {
+      plan_sink(request);
+      return true;
+    } catch (const NodeError&) {
+      return false;
+    }
+  };
+  std::vector<std::string> extensions = writable_extensions();
+  extensions.insert(extensions.end(), {"bmp", "EXR", "webp"});
+  int good = 0;
+  for (const std::string& extension : extensions)
+    for (const int bits : {0, 8, 10, 16, 32})
+      for (const char* compression : {"", "none", "zip", "zips", "lzw", "packbits", "dwaa", "piz", "rle",
+                                      "b44a", "pxr24", "quality:90", "quality:0", "quality:101", "best"}) {
+        EXPECT_EQ(accepted(extension, bits, compression), written(extension, bits, compression))
+            << extension << " " << bits << " " << compression;
+        good += written(extension, bits, compression);
+      }
+  EXPECT_GT(good, 50);
 }
 
 TEST(BadGraphs, AHundredThousandBracketsAreOneProblem) {
