@@ -1,35 +1,20 @@
 #include "nodes/kernels/bin_triangles.h"
 
-#include <limits>
 #include <memory>
 #include <numeric>
 
 #include <tbb/parallel_for.h>
 
+#include "nodes/kernels/simd/box_triangles.h"
+
 namespace frustum::kernels {
 namespace {
 
-// A triangle that touches the window and its bounding box in pixels of the window, both ends included.
-struct Boxed {
-  std::uint32_t face;
-  std::uint16_t x0, y0, x1, y1;
-};
-
-// What one chunk of triangles found.
+// A stretch of the triangles in drawing order; its boxes are boxed[begin, begin + counts.boxed).
 struct Chunk {
-  std::size_t begin = 0, end = 0, boxed = 0;  // boxed[begin, begin + boxed)
-  std::uint64_t out_of_range = 0, without_area = 0;
+  std::size_t begin = 0, end = 0;
+  BoxCounts counts;
 };
-
-// Pixels whose samples may lie in [least, greatest] (2^-8 px), when the offsets of the samples lie in [lo,
-// hi].
-struct Range {
-  std::int64_t first, last;
-};
-Range pixels(std::int32_t least, std::int32_t greatest, int lo, int hi) {
-  constexpr std::int64_t scale = sample_unit / corner_unit;
-  return {(least * scale - hi + sample_unit - 1) >> sample_bits, (greatest * scale - lo) >> sample_bits};
-}
 
 template <class R>
 class Binner {
@@ -40,7 +25,7 @@ class Binner {
     bins_.columns = (window.x1 - window.x0 + TriangleBins::size - 1) / TriangleBins::size;
     bins_.rows = (window.y1 - window.y0 + TriangleBins::size - 1) / TriangleBins::size;
     order_by_origin();
-    boxed_.reset(new Boxed[mesh.face.size()]);
+    boxed_.reset(new BoxedTriangle[mesh.face.size()]);
   }
 
   TriangleBins run() {
@@ -49,8 +34,8 @@ class Binner {
     allot();
     each_chunk([this](std::size_t c) { scatter_chunk(c); });
     for (const Chunk& c : chunks_) {
-      bins_.out_of_range += c.out_of_range;
-      bins_.without_area += c.without_area;
+      bins_.out_of_range += c.counts.out_of_range;
+      bins_.without_area += c.counts.without_area;
     }
     return std::move(bins_);
   }
@@ -89,42 +74,23 @@ class Binner {
 
   void box_chunk(std::size_t c) {
     Chunk& chunk = chunks_[c];
+    BoxedTriangle* boxed = &boxed_[chunk.begin];
+    const auto begin = static_cast<std::uint32_t>(chunk.begin), end = static_cast<std::uint32_t>(chunk.end);
+    if (!order_.empty())
+      for (std::uint32_t i = begin; i < end; ++i)
+        box_triangle(mesh_, order_[i], box_, window_, boxed, chunk.counts);
+    else if constexpr (std::is_same_v<R, float>)
+      chunk.counts = simd::box_triangles(mesh_, begin, end, box_, window_, boxed);
+    else
+      chunk.counts = box_triangles(mesh_, begin, end, box_, window_, boxed);
     std::uint64_t* count = &cursor_[c * bin_count()];
-    for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
-      Boxed& next = boxed_[chunk.begin + chunk.boxed];
-      if (!box(order_.empty() ? static_cast<std::uint32_t>(i) : order_[i], next, chunk)) continue;
-      ++chunk.boxed;
-      each_bin(next, [&](std::size_t bin, const BinEntry&) { ++count[bin]; });
-    }
-  }
-
-  // Whether the triangle may cover a sample of the window; fills `out` if so.
-  bool box(std::uint32_t face, Boxed& out, Chunk& chunk) const {
-    std::array<GridPoint, 3> p;
-    for (int k = 0; k < 3; ++k) {
-      const auto snapped = snap(mesh_.position[mesh_.face[face][k]], mesh_.corner_bits);
-      if (!snapped) return ++chunk.out_of_range, false;
-      p[static_cast<std::size_t>(k)] = *snapped;
-    }
-    const Range x =
-        pixels(std::min({p[0].x, p[1].x, p[2].x}), std::max({p[0].x, p[1].x, p[2].x}), box_.x0, box_.x1);
-    const Range y =
-        pixels(std::min({p[0].y, p[1].y, p[2].y}), std::max({p[0].y, p[1].y, p[2].y}), box_.y0, box_.y1);
-    if (twice_area(p[0], p[1], p[2]) == 0) return ++chunk.without_area, false;
-    const std::int64_t x0 = std::max<std::int64_t>(x.first, window_.x0),
-                       y0 = std::max<std::int64_t>(y.first, window_.y0);
-    const std::int64_t x1 = std::min<std::int64_t>(x.last, window_.x1 - 1),
-                       y1 = std::min<std::int64_t>(y.last, window_.y1 - 1);
-    if (x0 > x1 || y0 > y1) return false;
-    const auto narrow = [](std::int64_t v) { return static_cast<std::uint16_t>(v); };
-    out = {face, narrow(x0 - window_.x0), narrow(y0 - window_.y0), narrow(x1 - window_.x0),
-           narrow(y1 - window_.y0)};
-    return true;
+    for (std::size_t i = 0; i < chunk.counts.boxed; ++i)
+      each_bin(boxed[i], [count](std::size_t bin, const BinEntry&) { ++count[bin]; });
   }
 
   // Calls visit(bin, entry) for the bins that the triangle may touch.
   template <class F>
-  void each_bin(const Boxed& t, F&& visit) const {
+  void each_bin(const BoxedTriangle& t, F&& visit) const {
     constexpr int size = TriangleBins::size;
     const int column0 = t.x0 / size, column1 = t.x1 / size, row0 = t.y0 / size, row1 = t.y1 / size;
     const bool may_miss = column1 > column0 && row1 > row0;
@@ -166,8 +132,8 @@ class Binner {
 
   void scatter_chunk(std::size_t c) {
     std::uint64_t* cursor = &cursor_[c * bin_count()];
-    const Boxed* boxed = &boxed_[chunks_[c].begin];
-    for (std::size_t i = 0; i < chunks_[c].boxed; ++i)
+    const BoxedTriangle* boxed = &boxed_[chunks_[c].begin];
+    for (std::size_t i = 0; i < chunks_[c].counts.boxed; ++i)
       each_bin(boxed[i],
                [&](std::size_t bin, const BinEntry& entry) { bins_.entries[cursor[bin]++] = entry; });
   }
@@ -176,8 +142,8 @@ class Binner {
   SampleBox box_;
   PixelRect window_;
   TriangleBins bins_;
-  std::vector<std::uint32_t> order_;  // empty where faces already stand in drawing order
-  std::unique_ptr<Boxed[]> boxed_;    // per chunk, from its begin
+  std::vector<std::uint32_t> order_;        // empty where faces already stand in drawing order
+  std::unique_ptr<BoxedTriangle[]> boxed_;  // per chunk, from its begin
   std::vector<Chunk> chunks_;
   std::vector<std::uint64_t> cursor_;  // [chunk][bin]
 };

@@ -5,20 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "nodes/kernels/sample_positions.h"
-#include "nodes/kernels/screen_triangle.h"
+#include "nodes/kernels/box_triangles.h"
 
 namespace frustum::kernels {
-
-// Pixels x0 <= x < x1, y0 <= y < y1.
-struct PixelRect {
-  int x0, y0, x1, y1;
-
-  bool empty() const { return x0 >= x1 || y0 >= y1; }
-};
-inline PixelRect intersection(const PixelRect& a, const PixelRect& b) {
-  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-}
 
 // A triangle in a bin and the pixels of the bin that its bounding box touches, both ends included.
 struct BinEntry {

@@ -1,5 +1,8 @@
 #include "nodes/kernels/simd/interpolate_attributes.h"
 
+#include <hwy/cache_control.h>
+
+#include <bit>
 #include <cstring>
 
 #undef HWY_TARGET_INCLUDE
@@ -25,13 +28,14 @@ using Doubles = hn::Vec<Double>;
 // A row is worked in stretches of this many pixels, so that what passes between the steps stays in the first
 // cache.
 constexpr int stretch = 64;
-static_assert(stretch % hn::MaxLanes(Float()) == 0);
+static_assert(stretch % hn::MaxLanes(Float()) == 0 && stretch <= 32 * 4);
 
 using Quads = float[stretch][4];
 
 // One stretch of one row: which faces are seen and the weights of their corners.
 struct Points {
-  HWY_ALIGN std::uint32_t face[stretch];  // no_face: nothing is seen
+  HWY_ALIGN std::uint32_t face[stretch];       // no_face: nothing is seen
+  HWY_ALIGN std::uint32_t vertex[3][stretch];  // of the face; not set where nothing is seen
   HWY_ALIGN std::int32_t base[stretch];
   HWY_ALIGN float u[stretch], v[stretch], u_dx[stretch], v_dx[stretch], u_dy[stretch], v_dy[stretch],
       w[stretch];
@@ -47,26 +51,52 @@ struct Stretch {
 // Stands in where nothing is seen; its weights are finite and their use is masked.
 constexpr float stand_in[3][4] = {{0, 0, 0, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}};
 
-// Returns whether anything is seen.
-bool load_points(const AttributeScene<float>& scene, const Stretch& at, const std::uint32_t* ids, Points& p) {
-  bool any = false;
-  for (int i = 0; i < stretch; ++i) p.face[i] = i < at.count ? ids[i] : no_face;
-  for (int i = 0; i < at.count; ++i) {
-    any |= p.face[i] != no_face;
+// Asks for the attributes of a face's vertices, which lie anywhere in memory, well before they are used.
+void prefetch(const AttributePlanes<float>& planes, const glm::uvec3& vertex) {
+  for (const Attribute<float>& a : planes.attributes)
+    if (a.domain == AttributeDomain::vertex)
+      for (int k = 0; k < 3; ++k) hwy::Prefetch(a.data + vertex[k] * static_cast<std::size_t>(a.width));
+}
+
+HWY_INLINE hn::Mask<Float> seen_from(const Points& p, int i) {
+  const hn::RebindToUnsigned<Float> du;
+  return hn::RebindMask(Float(), hn::Ne(hn::Load(du, p.face + i), hn::Set(du, no_face)));
+}
+
+// Loads the faces of the points from i on; returns whether any is seen. Points beyond the stretch see
+// nothing.
+HWY_INLINE bool load_faces(const std::uint32_t* ids, int count, int i, Points& p) {
+  const hn::RebindToUnsigned<Float> du;
+  if (i + static_cast<int>(hn::Lanes(du)) <= count) {
+    hn::Store(hn::LoadU(du, ids + i), du, p.face + i);
+  } else {
+    hn::Store(hn::Set(du, no_face), du, p.face + i);
+    for (int k = i; k < count; ++k) p.face[k] = ids[k];
+  }
+  return !hn::AllFalse(Float(), seen_from(p, i));
+}
+
+// Loads the screen corners and the offsets of the points from i on.
+void load_points(const AttributeScene<float>& scene, const AttributePlanes<float>& planes, const Stretch& at,
+                 int i, Points& p) {
+  std::uint32_t last = no_face;
+  glm::uvec3 vertex(0);
+  for (const int end = i + static_cast<int>(hn::Lanes(Float())); i < end; ++i) {
+    const bool seen = p.face[i] != no_face;
+    if (seen && p.face[i] != last) {
+      last = p.face[i];
+      vertex = scene.mesh.face[last];
+      prefetch(planes, vertex);
+    }
+    for (int k = 0; k < 3; ++k) {
+      p.vertex[k][i] = vertex[k];
+      std::memcpy(p.corner[k][i], seen ? &scene.mesh.position[vertex[k]].x : stand_in[k],
+                  sizeof(p.corner[k][i]));
+    }
     const std::size_t k = scene.pattern.index(at.sample, at.x + i, at.y);
     p.offset_x[i] = scene.pattern.x[k];
     p.offset_y[i] = scene.pattern.y[k];
   }
-  if (!any) return false;
-  for (int i = 0; i < stretch; ++i) {
-    const bool seen = p.face[i] != no_face;
-    const glm::uvec3 vertex = seen ? scene.mesh.face[p.face[i]] : glm::uvec3(0);
-    for (int k = 0; k < 3; ++k)
-      std::memcpy(p.corner[k][i], seen ? &scene.mesh.position[vertex[k]].x : stand_in[k],
-                  sizeof(p.corner[k][i]));
-    if (i >= at.count) p.offset_x[i] = p.offset_y[i] = 0;
-  }
-  return true;
 }
 
 struct LaneCorners {
@@ -149,15 +179,18 @@ void weigh(const AttributeScene<float>& scene, const Stretch& at, Points& p, int
   }
 }
 
-// Copies the attribute of the corners base, base + 1, base + 2 of each point, four numbers apart.
+// Copies the attribute of the corners of the points from i on, four numbers apart.
 template <int width>
-void load_attribute(const Attribute<float>& a, const ScreenMesh<float>& mesh, int count, Points& p) {
-  const int modulo[5] = {0, 1, 2, 0, 1};
-  for (int i = 0; i < count; ++i) {
-    if (p.face[i] == no_face) continue;
-    for (int k = 0; k < 3; ++k)
-      std::memcpy(p.corner[k][i], a.data + a.row(mesh, p.face[i], modulo[p.base[i] + k]) * width,
-                  sizeof(float) * width);
+HWY_INLINE void load_attribute(const Attribute<float>& a, int i, Points& p) {
+  for (const int end = i + static_cast<int>(hn::Lanes(Float())); i < end; ++i) {
+    const std::uint32_t face = p.face[i];
+    if (face == no_face) continue;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::size_t row = a.domain == AttributeDomain::vertex   ? p.vertex[k][i]
+                              : a.domain == AttributeDomain::corner ? std::size_t{3} * face + k
+                                                                    : face;
+      std::memcpy(p.corner[k][i], a.data + row * width, sizeof(float) * width);
+    }
   }
 }
 
@@ -173,71 +206,123 @@ HWY_INLINE void put(const PlaneView<float>& plane, const Stretch& at, const Pixe
   std::copy_n(all, at.count - i, to);
 }
 
-HWY_INLINE hn::Mask<Float> seen_from(const Points& p, int i) {
+// Whether the points from i on all see one face.
+HWY_INLINE bool one_face(const Points& p, int i) {
   const hn::RebindToUnsigned<Float> du;
-  return hn::RebindMask(Float(), hn::Ne(hn::Load(du, p.face + i), hn::Set(du, no_face)));
+  return p.face[i] != no_face && hn::AllTrue(du, hn::Eq(hn::Load(du, p.face + i), hn::Set(du, p.face[i])));
+}
+
+// The attribute at the three corners of each point, base first.
+template <int width>
+HWY_INLINE void load_corners_of(const Attribute<float>& a, const ScreenMesh<float>& mesh, int i, Points& p,
+                                Floats (&corner)[3][4]) {
+  const Float df;
+  Floats all[3][4];
+  if (one_face(p, i)) {
+    for (int k = 0; k < 3; ++k)
+      for (int c = 0; c < width; ++c)
+        all[k][c] = hn::Set(df, a.data[a.row(mesh, p.face[i], k) * width + static_cast<std::size_t>(c)]);
+  } else {
+    for (int k = 0; k < 3; ++k)
+      hn::LoadInterleaved4(df, p.corner[k][i], all[k][0], all[k][1], all[k][2], all[k][3]);
+  }
+  const hn::RebindToSigned<Float> di;
+  const auto base = hn::Load(di, p.base + i);
+  const auto first = hn::RebindMask(df, hn::Eq(base, hn::Zero(di)));
+  const auto second = hn::RebindMask(df, hn::Eq(base, hn::Set(di, 1)));
+  for (int k = 0; k < 3; ++k)
+    for (int c = 0; c < width; ++c)
+      corner[k][c] =
+          hn::IfThenElse(first, all[k][c], hn::IfThenElse(second, all[(k + 1) % 3][c], all[(k + 2) % 3][c]));
 }
 
 template <int width>
 void interpolate(const Attribute<float>& a, const AttributeScene<float>& scene, const Stretch& at,
-                 const PixelRect& rect, Points& p) {
+                 const PixelRect& rect, int i, Points& p) {
   const Float df;
-  load_attribute<width>(a, scene.mesh, at.count, p);
-  for (int i = 0; i < at.count; i += static_cast<int>(hn::Lanes(df))) {
-    const auto seen = seen_from(p, i);
-    Floats corner[3][4];
-    for (int k = 0; k < 3; ++k)
-      hn::LoadInterleaved4(df, p.corner[k][i], corner[k][0], corner[k][1], corner[k][2], corner[k][3]);
-    const auto u = hn::Load(df, p.u + i), v = hn::Load(df, p.v + i);
-    for (std::size_t c = 0; c < width; ++c) {
-      const Floats first = corner[0][c], second = corner[1][c], third = corner[2][c];
-      const Floats ab = hn::Sub(second, first), ac = hn::Sub(third, first);
-      if (a.value[c].data != nullptr) {
-        const auto lesser = [](Floats x, Floats y) { return hn::IfThenElse(hn::Lt(y, x), y, x); };
-        const auto greater = [](Floats x, Floats y) { return hn::IfThenElse(hn::Lt(x, y), y, x); };
-        const Floats value = hn::Add(hn::Add(first, hn::Mul(u, ab)), hn::Mul(v, ac));
-        const Floats raised = greater(value, lesser(lesser(first, second), third));
-        put(a.value[c], at, rect, i, seen, lesser(raised, greater(greater(first, second), third)));
-      }
-      const auto slope = [&](const PlaneView<float>& plane, const float* du, const float* dv) {
-        if (plane.data == nullptr) return;
-        const auto change = hn::Add(hn::Mul(hn::Load(df, du + i), ab), hn::Mul(hn::Load(df, dv + i), ac));
-        put(plane, at, rect, i, seen, change);
-      };
-      slope(a.dx[c], p.u_dx, p.v_dx);
-      slope(a.dy[c], p.u_dy, p.v_dy);
+  const auto seen = seen_from(p, i);
+  Floats corner[3][4];
+  load_corners_of<width>(a, scene.mesh, i, p, corner);
+  const auto u = hn::Load(df, p.u + i), v = hn::Load(df, p.v + i);
+  for (std::size_t c = 0; c < width; ++c) {
+    const Floats first = corner[0][c], second = corner[1][c], third = corner[2][c];
+    const Floats ab = hn::Sub(second, first), ac = hn::Sub(third, first);
+    if (a.value[c].data != nullptr) {
+      const auto lesser = [](Floats x, Floats y) { return hn::IfThenElse(hn::Lt(y, x), y, x); };
+      const auto greater = [](Floats x, Floats y) { return hn::IfThenElse(hn::Lt(x, y), y, x); };
+      const Floats value = hn::Add(hn::Add(first, hn::Mul(u, ab)), hn::Mul(v, ac));
+      const Floats raised = greater(value, lesser(lesser(first, second), third));
+      put(a.value[c], at, rect, i, seen, lesser(raised, greater(greater(first, second), third)));
     }
+    const auto slope = [&](const PlaneView<float>& plane, const float* du, const float* dv) {
+      if (plane.data == nullptr) return;
+      const auto change = hn::Add(hn::Mul(hn::Load(df, du + i), ab), hn::Mul(hn::Load(df, dv + i), ac));
+      put(plane, at, rect, i, seen, change);
+    };
+    slope(a.dx[c], p.u_dx, p.v_dx);
+    slope(a.dy[c], p.u_dy, p.v_dy);
   }
 }
 
-void fill_empty(const AttributePlanes<float>& planes, const Stretch& at, const PixelRect& rect) {
+// Fills one vector of points that see nothing.
+void fill_empty(const AttributePlanes<float>& planes, const Stretch& at, const PixelRect& rect, int i,
+                const Points& p) {
+  const Float df;
   const auto clear = [&](const PlaneView<float>& plane) {
-    if (plane.data != nullptr)
-      std::fill_n(plane.row(at.sample, at.y - rect.y0) + (at.x - rect.x0), at.count, 0.0f);
+    put(plane, at, rect, i, seen_from(p, i), hn::Zero(df));
   };
   clear(planes.w);
   for (const Attribute<float>& a : planes.attributes)
-    for (std::size_t c = 0; c < static_cast<std::size_t>(a.width); ++c)
-      clear(a.value[c]), clear(a.dx[c]), clear(a.dy[c]);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(a.width); ++c) {
+      clear(a.value[c]);
+      clear(a.dx[c]);
+      clear(a.dy[c]);
+    }
+}
+
+// Calls visit(i) for the vectors of the stretch in which something is seen.
+template <class Visit>
+HWY_INLINE void each_seen(std::uint32_t seen, Visit&& visit) {
+  for (; seen != 0; seen &= seen - 1) visit(std::countr_zero(seen) * static_cast<int>(hn::Lanes(Float())));
+}
+
+template <int width>
+void interpolate_stretch(const Attribute<float>& a, const AttributeScene<float>& scene, const Stretch& at,
+                         const PixelRect& rect, std::uint32_t seen, Points& p) {
+  // All copies come before all uses: a wide load waits until the narrow stores it covers have left the store
+  // queue.
+  each_seen(seen, [&](int i) {
+    if (!one_face(p, i)) load_attribute<width>(a, i, p);
+  });
+  each_seen(seen, [&](int i) { interpolate<width>(a, scene, at, rect, i, p); });
 }
 
 void fill_stretch(const AttributeScene<float>& scene, const AttributePlanes<float>& planes,
                   bool differentiate, const Stretch& at, const PixelRect& rect, const std::uint32_t* ids,
                   Points& p) {
-  if (!load_points(scene, at, ids, p)) return fill_empty(planes, at, rect);
-  for (int i = 0; i < at.count; i += static_cast<int>(hn::Lanes(Double())))
-    differentiate ? weigh<true>(scene, at, p, i) : weigh<false>(scene, at, p, i);
-  for (int i = 0; i < at.count; i += static_cast<int>(hn::Lanes(Float())))
-    put(planes.w, at, rect, i, seen_from(p, i), hn::Load(Float(), p.w + i));
+  const int lanes = static_cast<int>(hn::Lanes(Float()));
+  std::uint32_t seen = 0;  // a bit for each vector of points
+  for (int i = 0; i < at.count; i += lanes) {
+    if (load_faces(ids, at.count, i, p))
+      seen |= 1u << (i / lanes);
+    else
+      fill_empty(planes, at, rect, i, p);
+  }
+  each_seen(seen, [&](int i) { load_points(scene, planes, at, i, p); });
+  each_seen(seen, [&](int i) {
+    for (const int end = i + lanes; i < end; i += static_cast<int>(hn::Lanes(Double())))
+      differentiate ? weigh<true>(scene, at, p, i) : weigh<false>(scene, at, p, i);
+  });
+  each_seen(seen, [&](int i) { put(planes.w, at, rect, i, seen_from(p, i), hn::Load(Float(), p.w + i)); });
   for (const Attribute<float>& a : planes.attributes) {
     if (a.width == 1)
-      interpolate<1>(a, scene, at, rect, p);
+      interpolate_stretch<1>(a, scene, at, rect, seen, p);
     else if (a.width == 2)
-      interpolate<2>(a, scene, at, rect, p);
+      interpolate_stretch<2>(a, scene, at, rect, seen, p);
     else if (a.width == 3)
-      interpolate<3>(a, scene, at, rect, p);
+      interpolate_stretch<3>(a, scene, at, rect, seen, p);
     else
-      interpolate<4>(a, scene, at, rect, p);
+      interpolate_stretch<4>(a, scene, at, rect, seen, p);
   }
 }
 
