@@ -1,5 +1,7 @@
 #include "nodes/kernels/simd/fill_triangles.h"
 
+#include <hwy/cache_control.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nodes/kernels/simd/fill_triangles.cpp"
 #include <hwy/foreach_target.h>
@@ -20,8 +22,17 @@ void draw_part(const FillScene<float>& scene, Drawing drawing, std::span<const B
   const std::size_t wide = hn::Lanes(Full()), narrow = hn::Lanes(Narrow());
   const bool lanes_fit = width >= static_cast<int>(narrow);
   if (lanes_fit && scene.pattern.period == 1) {
-    for (std::size_t i = 0; i < entries.size(); i += wide)
-      draw_entries(scene, drawing, entries.subspan(i, std::min(wide, entries.size() - i)));
+    const auto batch = [&](std::size_t i) {
+      return entries.subspan(std::min(i, entries.size()),
+                             std::min(wide, entries.size() - std::min(i, entries.size())));
+    };
+    for (std::size_t i = 0; i < entries.size(); i += wide) {
+      // Faces and corners lie anywhere in memory: ask for those of the next batches before this one is drawn.
+      for (const BinEntry& e : batch(i + 2 * wide)) hwy::Prefetch(&scene.mesh.face[e.face]);
+      for (const BinEntry& e : batch(i + wide))
+        for (int k = 0; k < 3; ++k) hwy::Prefetch(&scene.mesh.position[scene.mesh.face[e.face][k]]);
+      draw_entries(scene, drawing, batch(i));
+    }
     return;
   }
   for (const BinEntry& entry : entries) {

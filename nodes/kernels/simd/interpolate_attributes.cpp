@@ -35,7 +35,8 @@ using Quads = float[stretch][4];
 // One stretch of one row: which faces are seen and the weights of their corners.
 struct Points {
   HWY_ALIGN std::uint32_t face[stretch];       // no_face: nothing is seen
-  HWY_ALIGN std::uint32_t vertex[3][stretch];  // of the face; not set where nothing is seen
+  HWY_ALIGN std::uint32_t held[stretch];       // the face, or a neighbour's where nothing is seen
+  HWY_ALIGN std::uint32_t vertex[3][stretch];  // of the held face
   HWY_ALIGN std::int32_t base[stretch];
   HWY_ALIGN float u[stretch], v[stretch], u_dx[stretch], v_dx[stretch], u_dy[stretch], v_dy[stretch],
       w[stretch];
@@ -48,14 +49,22 @@ struct Stretch {
   int count;         // of pixels, 1 to `stretch`
 };
 
-// Stands in where nothing is seen; its weights are finite and their use is masked.
-constexpr float stand_in[3][4] = {{0, 0, 0, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}};
-
-// Asks for the attributes of a face's vertices, which lie anywhere in memory, well before they are used.
-void prefetch(const AttributePlanes<float>& planes, const glm::uvec3& vertex) {
-  for (const Attribute<float>& a : planes.attributes)
-    if (a.domain == AttributeDomain::vertex)
-      for (int k = 0; k < 3; ++k) hwy::Prefetch(a.data + vertex[k] * static_cast<std::size_t>(a.width));
+// Asks for the corners and attributes of the faces seen, which lie anywhere in memory, well before they are
+// used.
+void prefetch(const AttributeScene<float>& scene, const AttributePlanes<float>& planes,
+              const std::uint32_t* ids, int count) {
+  std::uint32_t last = no_face;
+  for (int i = 0; i < count; ++i) {
+    if (ids[i] == last || ids[i] == no_face) continue;
+    last = ids[i];
+    const glm::uvec3 vertex = scene.mesh.face[last];
+    for (int k = 0; k < 3; ++k) {
+      hwy::Prefetch(&scene.mesh.position[vertex[k]]);
+      for (const Attribute<float>& a : planes.attributes)
+        if (a.domain == AttributeDomain::vertex)
+          hwy::Prefetch(a.data + vertex[k] * static_cast<std::size_t>(a.width));
+    }
+  }
 }
 
 HWY_INLINE hn::Mask<Float> seen_from(const Points& p, int i) {
@@ -76,26 +85,33 @@ HWY_INLINE bool load_faces(const std::uint32_t* ids, int count, int i, Points& p
   return !hn::AllFalse(Float(), seen_from(p, i));
 }
 
-// Loads the screen corners and the offsets of the points from i on.
-void load_points(const AttributeScene<float>& scene, const AttributePlanes<float>& planes, const Stretch& at,
-                 int i, Points& p) {
-  std::uint32_t last = no_face;
-  glm::uvec3 vertex(0);
-  for (const int end = i + static_cast<int>(hn::Lanes(Float())); i < end; ++i) {
+// Loads the screen corners of the points from i on, some of which see a face. The others hold a face, too, so
+// that what is loaded for them exists.
+void load_points(const AttributeScene<float>& scene, int i, Points& p) {
+  const int end = i + static_cast<int>(hn::Lanes(Float()));
+  std::uint32_t held = *std::find_if(p.face + i, p.face + end, [](std::uint32_t f) { return f != no_face; });
+  glm::uvec3 vertex = scene.mesh.face[held];
+  for (; i < end; ++i) {
     const bool seen = p.face[i] != no_face;
-    if (seen && p.face[i] != last) {
-      last = p.face[i];
-      vertex = scene.mesh.face[last];
-      prefetch(planes, vertex);
+    if (seen && p.face[i] != held) {
+      held = p.face[i];
+      vertex = scene.mesh.face[held];
     }
+    p.held[i] = held;
     for (int k = 0; k < 3; ++k) {
       p.vertex[k][i] = vertex[k];
-      std::memcpy(p.corner[k][i], seen ? &scene.mesh.position[vertex[k]].x : stand_in[k],
-                  sizeof(p.corner[k][i]));
+      std::memcpy(p.corner[k][i], &scene.mesh.position[vertex[k]].x, sizeof(p.corner[k][i]));
     }
-    const std::size_t k = scene.pattern.index(at.sample, at.x + i, at.y);
-    p.offset_x[i] = scene.pattern.x[k];
-    p.offset_y[i] = scene.pattern.y[k];
+  }
+}
+
+// Loads the offsets of the samples of the points from i on.
+void load_offsets(const SamplePositions& pattern, const Stretch& at, int i, Points& p) {
+  const std::size_t row = pattern.index(at.sample, 0, at.y);
+  for (const int end = i + static_cast<int>(hn::Lanes(Float())); i < end; ++i) {
+    const std::size_t k = row + static_cast<std::size_t>((at.x + i) & (pattern.period - 1));
+    p.offset_x[i] = pattern.x[k];
+    p.offset_y[i] = pattern.y[k];
   }
 }
 
@@ -182,15 +198,17 @@ void weigh(const AttributeScene<float>& scene, const Stretch& at, Points& p, int
 // Copies the attribute of the corners of the points from i on, four numbers apart.
 template <int width>
 HWY_INLINE void load_attribute(const Attribute<float>& a, int i, Points& p) {
-  for (const int end = i + static_cast<int>(hn::Lanes(Float())); i < end; ++i) {
-    const std::uint32_t face = p.face[i];
-    if (face == no_face) continue;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::size_t row = a.domain == AttributeDomain::vertex   ? p.vertex[k][i]
-                              : a.domain == AttributeDomain::corner ? std::size_t{3} * face + k
-                                                                    : face;
-      std::memcpy(p.corner[k][i], a.data + row * width, sizeof(float) * width);
+  const int lanes = static_cast<int>(hn::Lanes(Float()));
+  HWY_ALIGN std::uint32_t corner_rows[hn::MaxLanes(Float())];
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::uint32_t* rows = p.vertex[k] + i;
+    if (a.domain == AttributeDomain::face) rows = p.held + i;
+    if (a.domain == AttributeDomain::corner) {
+      for (int l = 0; l < lanes; ++l) corner_rows[l] = 3 * p.held[i + l] + k;
+      rows = corner_rows;
     }
+    for (int l = 0; l < lanes; ++l)
+      std::memcpy(p.corner[k][i + l], a.data + std::size_t{rows[l]} * width, sizeof(float) * width);
   }
 }
 
@@ -308,7 +326,10 @@ void fill_stretch(const AttributeScene<float>& scene, const AttributePlanes<floa
     else
       fill_empty(planes, at, rect, i, p);
   }
-  each_seen(seen, [&](int i) { load_points(scene, planes, at, i, p); });
+  each_seen(seen, [&](int i) {
+    load_points(scene, i, p);
+    load_offsets(scene.pattern, at, i, p);
+  });
   each_seen(seen, [&](int i) {
     for (const int end = i + lanes; i < end; i += static_cast<int>(hn::Lanes(Double())))
       differentiate ? weigh<true>(scene, at, p, i) : weigh<false>(scene, at, p, i);
@@ -334,11 +355,14 @@ void interpolate_attributes(const AttributeScene<float>& scene, PixelRect rect,
                                          [](const Attribute<float>& a) { return a.differentiates(); });
   Points points{};
   for (int s = 0; s < scene.pattern.samples; ++s)
-    for (int y = rect.y0; y < rect.y1; ++y)
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      const std::uint32_t* ids = id.row(s, y - rect.y0);
+      if (y + 1 < rect.y1) prefetch(scene, planes, ids + id.row_stride, rect.x1 - rect.x0);
       for (int x = rect.x0; x < rect.x1; x += stretch) {
         const Stretch at{s, x, y, std::min(stretch, rect.x1 - x)};
-        fill_stretch(scene, planes, differentiate, at, rect, id.row(s, y - rect.y0) + (x - rect.x0), points);
+        fill_stretch(scene, planes, differentiate, at, rect, ids + (x - rect.x0), points);
       }
+    }
 }
 
 #else  // without vectors the twin itself
