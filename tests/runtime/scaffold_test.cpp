@@ -25,6 +25,25 @@ TEST(NewNode, NamesAreFamilyDotNodeInSnakeCase) {
     EXPECT_NE(problem_of_node_name(bad), "") << bad;
 }
 
+// The words of a command as a shell would see them: quotes and backslashes keep spaces inside a word.
+std::vector<std::string> shell_words(const std::string& command) {
+  std::vector<std::string> words;
+  bool inside = false, quoted = false;
+  for (std::size_t i = 0; i < command.size(); ++i) {
+    const char c = command[i];
+    if (c == ' ' && !quoted) {
+      inside = false;
+      continue;
+    }
+    if (!inside) words.emplace_back();
+    inside = true;
+    if (c == '"') quoted = !quoted;
+    else if (c == '\\' && i + 1 < command.size()) words.back() += command[++i];
+    else words.back() += c;
+  }
+  return words;
+}
+
 // How this build compiles a file of nodes/, without the output: from compile_commands.json.
 std::vector<std::string> compile_command() {
   const fs::path build = fs::path(test::frustum_program()).parent_path().parent_path();
@@ -32,13 +51,10 @@ std::vector<std::string> compile_command() {
   for (const Json& entry : Json::parse(in)) {
     if (!entry["file"].get<std::string>().ends_with("nodes/io/load_patches.cpp")) continue;
     std::vector<std::string> command;
-    std::istringstream words(entry["command"].get<std::string>());
-    for (std::string w; words >> w;) {
-      if (w == "-o" || w == "-c") {
-        words >> w;
-        continue;
-      }
-      if (!w.ends_with("ccache")) command.push_back(w);
+    const std::vector<std::string> words = shell_words(entry["command"].get<std::string>());
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      if (words[i] == "-o" || words[i] == "-c") ++i;
+      else if (!words[i].ends_with("ccache")) command.push_back(words[i]);
     }
     return command;
   }
