@@ -287,19 +287,6 @@ constexpr std::string_view pixel_graph = R"({ "$schema": "../../../schemas/graph
     "bright": { "from": "bright" } } }
 )";
 
-// snake_case to PascalCase, for the names of tests.
-std::string pascal(std::string_view name) {
-  std::string out;
-  bool up = true;
-  for (const char c : name) {
-    if (c == '_')
-      up = true;
-    else
-      out += up && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c, up = false;
-  }
-  return out;
-}
-
 std::string filled(std::string_view text, const std::vector<std::pair<std::string, std::string>>& values) {
   std::string out(text);
   for (const auto& [key, value] : values)
@@ -309,6 +296,20 @@ std::string filled(std::string_view text, const std::vector<std::pair<std::strin
 }
 
 }  // namespace
+
+std::string pascal_name(std::string_view name) {
+  std::string out;
+  bool up = true;
+  for (const char c : name) {
+    if (c == '_' || c == '.') {
+      up = true;
+      continue;
+    }
+    out += up && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    up = false;
+  }
+  return out;
+}
 
 std::string problem_of_node_name(std::string_view name) {
   static const std::regex pattern("[a-z][a-z0-9_]*[.][a-z][a-z0-9_]*");
@@ -325,7 +326,7 @@ std::vector<ScaffoldFile> scaffold(std::string_view name, NewNode kind) {
                                                                 {"@include@", "#include"},
                                                                 {"@family@", family},
                                                                 {"@node@", node},
-                                                                {"@Node@", pascal(family) + pascal(node)}};
+                                                                {"@Node@", pascal_name(name)}};
   const bool pixels = kind == NewNode::pixels;
   const std::string path = family + "/" + node;
   return {{"nodes/" + path + ".h", filled(pixels ? pixel_header : geometry_header, values)},

@@ -10,6 +10,9 @@ namespace frustum {
 
 enum class NewNode { geometry, pixels };
 
+// "clip.homogeneous" as "ClipHomogeneous", the name of its tests.
+std::string pascal_name(std::string_view name);
+
 struct ScaffoldFile {
   std::string path;  // relative to the root of the source tree
   std::string text;

@@ -20,6 +20,13 @@ std::filesystem::path tree(const Arguments& args) {
   throw UsageError("new: no source tree around the current folder; name it with --root");
 }
 
+// What ctest -R takes for the node's own tests and for those that every node is held to.
+std::string test_pattern(std::string_view name) {
+  std::string own = pascal_name(name), conformance(name);
+  conformance[conformance.find('.')] = '_';
+  return own + "|" + conformance;
+}
+
 int make(const Arguments& args, bool json) {
   if (const std::string problem = problem_of_node_name(args.name); !problem.empty())
     throw UsageError(fmt::format("new {}: {}", args.name, problem));
@@ -43,10 +50,9 @@ int make(const Arguments& args, bool json) {
     print(text + fmt::format("\nIt builds and runs as it is. Now make it do what you want:\n"
                              "  {0}   the algorithm\n  {1}   its ports and parameters\n\n"
                              "  ./dev run {3}   builds and runs the example\n"
-                             "  ./dev test -R {2}   runs its tests\n"
+                             "  ./dev test -R '{2}'   runs its tests\n"
                              "  ./dev docs   writes its schema and its page\n",
-                             files[0].path, files[1].path, args.name.substr(args.name.find('.') + 1),
-                             files[3].path));
+                             files[0].path, files[1].path, test_pattern(args.name), files[3].path));
   return done;
 }
 
