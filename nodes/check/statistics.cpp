@@ -1,6 +1,6 @@
 #include "nodes/check/statistics.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/check.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/numbers.h"
 #include "runtime/buffers/value.h"

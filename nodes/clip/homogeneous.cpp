@@ -1,6 +1,6 @@
 #include "nodes/clip/homogeneous.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/clip.h"
 #include "runtime/buffers/mesh_faces.h"
 #include "runtime/core/node_type.h"
 

@@ -1,6 +1,6 @@
 #include "nodes/color/convert.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/color.h"
 #include "runtime/buffers/image.h"
 #include "runtime/core/node_type.h"
 #include "runtime/io/color.h"

@@ -1,6 +1,6 @@
 #include "nodes/cull/backface.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/cull.h"
 #include "runtime/buffers/mesh_faces.h"
 #include "runtime/core/node_type.h"
 

@@ -1,6 +1,6 @@
 #include "nodes/filter/convolve.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/filter.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/real_rows.h"
 #include "runtime/core/node_type.h"

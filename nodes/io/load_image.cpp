@@ -1,6 +1,6 @@
 #include "nodes/io/load_image.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/io.h"
 #include "runtime/core/node_type.h"
 #include "runtime/io/color.h"
 #include "runtime/io/image_files.h"

@@ -1,6 +1,6 @@
 #include "nodes/io/load_mesh.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/io.h"
 #include "runtime/core/node_type.h"
 #include "runtime/io/file_bytes.h"
 #include "runtime/io/obj.h"

@@ -1,6 +1,6 @@
 #include "nodes/io/load_patches.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/io.h"
 #include "runtime/core/node_type.h"
 #include "runtime/io/file_bytes.h"
 

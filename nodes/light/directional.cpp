@@ -1,6 +1,6 @@
 #include "nodes/light/directional.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/light.h"
 #include "runtime/buffers/light.h"
 #include "runtime/core/node_type.h"
 

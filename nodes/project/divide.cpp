@@ -1,6 +1,6 @@
 #include "nodes/project/divide.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/project.h"
 #include "runtime/buffers/mesh_faces.h"
 #include "runtime/core/node_type.h"
 

@@ -1,6 +1,6 @@
 #include "nodes/project/orthographic.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/project.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/core/node_type.h"
 

@@ -1,7 +1,7 @@
 #include "nodes/project/view.h"
 
-#include "nodes/all_nodes.h"
 #include "nodes/kernels/camera.h"
+#include "nodes/project.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/core/node_type.h"
 

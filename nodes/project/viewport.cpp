@@ -1,6 +1,6 @@
 #include "nodes/project/viewport.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/project.h"
 #include "runtime/buffers/mesh_faces.h"
 #include "runtime/core/node_type.h"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "nodes/all_nodes.h"
+#include "nodes/rasterize.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/pattern.h"

@@ -1,6 +1,6 @@
 #include "nodes/scene/camera.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/scene.h"
 #include "runtime/buffers/camera.h"
 #include "runtime/core/node_type.h"
 

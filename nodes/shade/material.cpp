@@ -1,6 +1,6 @@
 #include "nodes/shade/material.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/shade.h"
 #include "runtime/buffers/material.h"
 #include "runtime/core/node_type.h"
 

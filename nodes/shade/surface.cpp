@@ -1,6 +1,6 @@
 #include "nodes/shade/surface.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/shade.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/light.h"
 #include "runtime/buffers/mesh.h"

@@ -1,6 +1,6 @@
 #include "nodes/supersample/pattern.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/supersample.h"
 #include "runtime/buffers/pattern.h"
 #include "runtime/core/node_type.h"
 

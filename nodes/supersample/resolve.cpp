@@ -1,6 +1,6 @@
 #include "nodes/supersample/resolve.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/supersample.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/real_rows.h"
 #include "runtime/core/node_type.h"

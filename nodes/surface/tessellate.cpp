@@ -1,6 +1,6 @@
 #include "nodes/surface/tessellate.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/surface.h"
 #include "runtime/buffers/camera.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/surface.h"

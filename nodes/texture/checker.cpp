@@ -1,6 +1,6 @@
 #include "nodes/texture/checker.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/texture.h"
 #include "runtime/buffers/texture.h"
 #include "runtime/core/node_type.h"
 

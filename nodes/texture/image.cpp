@@ -1,6 +1,6 @@
 #include "nodes/texture/image.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/texture.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/texture.h"
 #include "runtime/core/node_type.h"

@@ -1,6 +1,6 @@
 #include "nodes/transform/affine.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/transform.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/surface.h"
 #include "runtime/buffers/value.h"

@@ -62,7 +62,12 @@ void run_layers(benchmark::State& state) {
   state.counters["ns_per_node"] =
       benchmark::Counter(1000, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-BENCHMARK(run_layers)->Name("graph_of_1000_trivial_nodes/width")->Arg(1)->Arg(10)->Arg(100)->Unit(benchmark::kMicrosecond);
+BENCHMARK(run_layers)
+    ->Name("graph_of_1000_trivial_nodes/width")
+    ->Arg(1)
+    ->Arg(10)
+    ->Arg(100)
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace frustum

@@ -2,7 +2,7 @@
 // configuration.
 #include "runtime/io/color.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/color.h"
 #include "runtime/core/error.h"
 #include "runtime/core/node_type.h"
 #include "runtime/io/color_spaces.h"

@@ -15,7 +15,8 @@ using testing::HasSubstr;
 GraphMaker diamond(int samples = 1, int radius = 2) {
   GraphMaker g;
   g.add("factor", "test.number", {}, R"({"value": 3})")
-      .add("noise", "test.source", {{"scale", "factor"}}, R"({"size": [150, 70], "samples": )" + std::to_string(samples) + "}")
+      .add("noise", "test.source", {{"scale", "factor"}},
+           R"({"size": [150, 70], "samples": )" + std::to_string(samples) + "}")
       .add("soft", "test.blur", {{"image", "noise"}}, R"({"radius": )" + std::to_string(radius) + "}")
       .add("softer", "test.blur", {{"image", "soft"}})
       .add("sum", "test.add", {{"a", "softer"}, {"b", "noise"}});
@@ -29,7 +30,8 @@ std::string bytes_of(const Buffer& b) {
   for (int p = 0; p < static_cast<int>(r.frame().planes.size()); ++p)
     for (int s = 0; s < t.samples(); ++s)
       for (int y = t.rect().y0; y < t.rect().y1; ++y)
-        bytes.append(reinterpret_cast<const char*>(t.row<const float>(p, s, y)), static_cast<std::size_t>(t.rect().width()) * 4);
+        bytes.append(reinterpret_cast<const char*>(t.row<const float>(p, s, y)),
+                     static_cast<std::size_t>(t.rect().width()) * 4);
   return bytes;
 }
 
@@ -57,7 +59,8 @@ class Recorder : public Sink {
     log_.next_row = t.rect().y1;
     ++log_.bands;
     for (int y = t.rect().y0; y < t.rect().y1; ++y)
-      log_.bytes.append(reinterpret_cast<const char*>(t.row<const float>(0, 0, y)), static_cast<std::size_t>(t.rect().width()) * 4);
+      log_.bytes.append(reinterpret_cast<const char*>(t.row<const float>(0, 0, y)),
+                        static_cast<std::size_t>(t.rect().width()) * 4);
   }
   void finish() override {
     EXPECT_EQ(log_.next_row, log_.request.region.y1);
@@ -81,7 +84,8 @@ TEST(Run, GivesTheSameBytesForEveryTileEdgeThreadCountAndFusion) {
 TEST(Run, CutsTheChainWhereAWideMarginWouldRecomputeIt) {
   const GraphMaker g = [] {
     GraphMaker m;
-    m.add("noise", "test.source", {}, R"({"size": [300, 280]})").add("soft", "test.blur", {{"image", "noise"}}, R"({"radius": 24})");
+    m.add("noise", "test.source", {}, R"({"size": [300, 280]})")
+        .add("soft", "test.blur", {{"image", "noise"}}, R"({"radius": 24})");
     return m;
   }();
   struct Times : Observer {
@@ -123,13 +127,17 @@ TEST(Run, ARegionHasTheBytesOfThatPartOfTheWhole) {
   const Raster& b = whole.buffers.at(g.port("sum")).as<Image>()->raster;
   EXPECT_EQ(a.frame().window, (Rect{33, 11, 94, 52}));
   for (int y = 11; y < 52; ++y)
-    ASSERT_EQ(std::memcmp(a.view().row<const float>(0, 0, y), b.view(a.frame().window).row<const float>(0, 0, y), 61 * 4), 0) << y;
+    ASSERT_EQ(std::memcmp(a.view().row<const float>(0, 0, y),
+                          b.view(a.frame().window).row<const float>(0, 0, y), 61 * 4),
+              0)
+        << y;
 }
 
 TEST(Run, ARegionOfSeveralPortsOfOneChainIsCutFromEach) {
   GraphMaker g = diamond();
   g.add("total", "test.total", {{"image", "soft"}});
-  const std::vector<PortRef> ports{g.port("noise"), g.port("soft"), g.port("softer"), g.port("sum"), g.port("total")};
+  const std::vector<PortRef> ports{g.port("noise"), g.port("soft"), g.port("softer"), g.port("sum"),
+                                   g.port("total")};
   const RunResult whole = run_graph(g.graph, {.demand = {.ports = ports}});
   const RunResult part = run_graph(g.graph, {.demand = {.ports = ports}, .region = Rect{70, 33, 71, 34}});
   ASSERT_EQ(part.end, RunResult::End::done) << to_text(part.problems);
@@ -155,15 +163,18 @@ TEST(Run, ReadsWholePixelsFromMemoryAndContinues) {
   ASSERT_EQ(r.end, RunResult::End::done) << to_text(r.problems);
   const double sum = r.buffers.at(g.port("total")).as<Number>()->value;
   EXPECT_NEAR(sum / (150 * 70), 1.5, 0.02) << "the mean of noise in [0, 1) times 3";
-  EXPECT_EQ(r.buffers.at(g.port("again")).as<Image>()->raster.at<float>(0, 0, 1, 0), static_cast<float>(sum) * source::value(1, 0, 0));
+  EXPECT_EQ(r.buffers.at(g.port("again")).as<Image>()->raster.at<float>(0, 0, 1, 0),
+            static_cast<float>(sum) * source::value(1, 0, 0));
 }
 
 TEST(Run, ChangingALateParameterRerunsOnlyWhatFollowsIt) {
   MemoryCache cache;
   const auto chain = [](const char* late) {
     GraphMaker g;
-    g.add("early", "test.number", {}).add("noise", "test.source", {{"scale", "early"}})
-        .add("total", "test.total", {{"image", "noise"}}).add("late", "test.source", {{"scale", "total"}}, late);
+    g.add("early", "test.number", {})
+        .add("noise", "test.source", {{"scale", "early"}})
+        .add("total", "test.total", {{"image", "noise"}})
+        .add("late", "test.source", {{"scale", "total"}}, late);
     return g;
   };
   const auto runs = [&](const char* late) {
@@ -172,10 +183,13 @@ TEST(Run, ChangingALateParameterRerunsOnlyWhatFollowsIt) {
       void done(const WorkDone& w) override { ids.insert(ids.end(), w.nodes.begin(), w.nodes.end()); }
     } seen;
     const GraphMaker g = chain(late);
-    EXPECT_EQ(run_graph(g.graph, {.demand = {.ports = {g.port("late")}}, .observer = &seen, .cache = &cache}).end, RunResult::End::done);
+    EXPECT_EQ(
+        run_graph(g.graph, {.demand = {.ports = {g.port("late")}}, .observer = &seen, .cache = &cache}).end,
+        RunResult::End::done);
     return seen.ids;
   };
-  EXPECT_EQ(runs(R"({"size": [8, 8]})"), (std::vector<std::string>{"early", "noise", "noise", "total", "late", "late"}));
+  EXPECT_EQ(runs(R"({"size": [8, 8]})"),
+            (std::vector<std::string>{"early", "noise", "noise", "total", "late", "late"}));
   EXPECT_EQ(runs(R"({"size": [9, 8]})"), (std::vector<std::string>{"late", "late"}));
   EXPECT_TRUE(runs(R"({"size": [9, 8]})").empty());
 }
@@ -194,7 +208,9 @@ TEST(Run, NamesTheFirstNodeThatMadeANaN) {
 
 TEST(Run, AFailingNodeEndsTheRunAtItsPlace) {
   GraphMaker g;
-  g.add("bad", "test.number", {}, R"({"value": -1})").add("noise", "test.source", {{"scale", "bad"}}).output("o", "noise", "o.exr");
+  g.add("bad", "test.number", {}, R"({"value": -1})")
+      .add("noise", "test.source", {{"scale", "bad"}})
+      .output("o", "noise", "o.exr");
   RunOptions o{.demand = {.outputs = {0}}};
   bool opened = false;
   o.make_sink = [&](const SinkRequest&) -> std::unique_ptr<Sink> {
@@ -243,8 +259,10 @@ TEST(Run, RefusesWhatDoesNotFitInMemoryBeforePixelsStart) {
 TEST(Run, OnePixelAndOneRowAreNoSpecialCase) {
   for (const char* size : {"[1, 1]", "[1, 4096]", "[4096, 1]", "[7, 5]"}) {
     GraphMaker g;
-    g.add("noise", "test.source", {}, std::string(R"({"size": )") + size + "}").add("soft", "test.blur", {{"image", "noise"}}, R"({"radius": 3})");
-    EXPECT_EQ(run_bytes(g, "soft"), run_bytes(g, "soft", {.threads = 1, .tile_edge = -1, .fuse = false})) << size;
+    g.add("noise", "test.source", {}, std::string(R"({"size": )") + size + "}")
+        .add("soft", "test.blur", {{"image", "noise"}}, R"({"radius": 3})");
+    EXPECT_EQ(run_bytes(g, "soft"), run_bytes(g, "soft", {.threads = 1, .tile_edge = -1, .fuse = false}))
+        << size;
   }
 }
 

@@ -7,13 +7,15 @@
 namespace frustum::test {
 
 GraphMaker& GraphMaker::add(const std::string& id, const std::string& type,
-                            std::vector<std::pair<std::string, std::string>> links, const std::string& params) {
+                            std::vector<std::pair<std::string, std::string>> links,
+                            const std::string& params) {
   GraphNode n;
   n.id = id;
   n.type = registry().find(type);
   if (n.type == nullptr) throw std::invalid_argument(type);
   n.inputs.resize(n.type->inputs.size());
-  for (const auto& [input, from] : links) n.inputs.at(n.type->find_input(input).value()).push_back(port(from));
+  for (const auto& [input, from] : links)
+    n.inputs.at(n.type->find_input(input).value()).push_back(port(from));
   auto values = n.type->default_params();
   Diagnostics problems;
   ParamReader reader(problems, "", "");

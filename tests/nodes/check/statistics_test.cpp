@@ -1,4 +1,4 @@
-#include "nodes/all_nodes.h"
+#include "nodes/check.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/value.h"
 #include "tests/support/tiles.h"

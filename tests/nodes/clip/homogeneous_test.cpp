@@ -1,6 +1,6 @@
 #include "nodes/clip/homogeneous.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/clip.h"
 #include "nodes/kernels/vector.h"
 #include "tests/support/meshes.h"
 #include "tests/support/run_node.h"

@@ -1,6 +1,6 @@
 #include "nodes/cull/backface.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/cull.h"
 #include "nodes/kernels/camera.h"
 #include "tests/support/meshes.h"
 #include "tests/support/run_node.h"

@@ -1,6 +1,6 @@
 #include "nodes/cull/frustum.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/cull.h"
 #include "tests/support/meshes.h"
 #include "tests/support/run_node.h"
 #include "tests/support/ulps.h"

@@ -1,6 +1,6 @@
 // filter.convolve: kernels by hand, borders by hand, and the vector kernel.
 #include "nodes/kernels/simd/convolve.h"
-#include "nodes/all_nodes.h"
+#include "nodes/filter.h"
 #include "runtime/buffers/image.h"
 #include "tests/support/tiles.h"
 #include "tests/support/ulps.h"

@@ -1,4 +1,4 @@
-#include "nodes/all_nodes.h"
+#include "nodes/io.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/io/obj.h"
 #include "runtime/io/obj_parse.h"

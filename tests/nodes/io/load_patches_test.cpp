@@ -1,6 +1,6 @@
 #include "nodes/io/load_patches.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/io.h"
 #include "tests/support/run_node.h"
 #include "tests/support/temp_file.h"
 

@@ -1,4 +1,4 @@
-#include "nodes/all_nodes.h"
+#include "nodes/light.h"
 #include "runtime/buffers/light.h"
 #include "tests/support/tiles.h"
 

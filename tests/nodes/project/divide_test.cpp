@@ -1,6 +1,6 @@
 #include "nodes/project/divide.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/project.h"
 #include "tests/support/meshes.h"
 #include "tests/support/run_node.h"
 

@@ -1,7 +1,7 @@
 #include "nodes/project/view.h"
 
-#include "nodes/all_nodes.h"
 #include "nodes/kernels/camera.h"
+#include "nodes/project.h"
 #include "tests/support/meshes.h"
 #include "tests/support/run_node.h"
 #include "tests/support/ulps.h"

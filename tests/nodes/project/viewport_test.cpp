@@ -1,6 +1,6 @@
 #include "nodes/project/viewport.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/project.h"
 #include "tests/support/meshes.h"
 #include "tests/support/run_node.h"
 #include "tests/support/ulps.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "nodes/all_nodes.h"
+#include "nodes/rasterize.h"
 #include "tests/nodes/rasterize/screen_mesh.h"
 
 namespace frustum {

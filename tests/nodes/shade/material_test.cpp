@@ -1,6 +1,6 @@
 #include "runtime/buffers/material.h"
-#include "nodes/all_nodes.h"
 #include "nodes/kernels/lighting.h"
+#include "nodes/shade.h"
 #include "tests/support/tiles.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // shade.surface: the three interpolations, its rates, and what it takes from material, lights and albedo.
-#include "nodes/all_nodes.h"
+#include "nodes/shade.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/light.h"
 #include "runtime/buffers/mesh.h"

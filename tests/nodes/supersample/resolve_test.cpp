@@ -1,7 +1,7 @@
 // supersample.resolve: against a direct sum in double, closed forms of edges, and the vector kernels.
 #include "nodes/kernels/resolve.h"
-#include "nodes/all_nodes.h"
 #include "nodes/kernels/simd/resolve.h"
+#include "nodes/supersample.h"
 #include "runtime/buffers/image.h"
 #include "tests/support/tiles.h"
 #include "tests/support/ulps.h"

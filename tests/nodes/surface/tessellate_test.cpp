@@ -1,6 +1,7 @@
 // surface.tessellate: no cracks, within the tolerance, normals everywhere.
-#include "nodes/all_nodes.h"
+#include "nodes/io.h"
 #include "nodes/kernels/bicubic.h"
+#include "nodes/surface.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/surface.h"
 #include "tests/support/tiles.h"

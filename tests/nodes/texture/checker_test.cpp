@@ -1,4 +1,4 @@
-#include "nodes/all_nodes.h"
+#include "nodes/texture.h"
 #include "runtime/buffers/texture.h"
 #include "tests/support/tiles.h"
 

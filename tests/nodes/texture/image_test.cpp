@@ -1,6 +1,7 @@
 #include "nodes/texture/image.h"
 
-#include "nodes/all_nodes.h"
+#include "nodes/io.h"
+#include "nodes/texture.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/texture.h"
 #include "tests/support/run_node.h"

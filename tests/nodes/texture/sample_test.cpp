@@ -1,7 +1,7 @@
 // texture.sample: pyramids and checkerboards against closed forms, and the vector kernels against their
 // scalar twins.
-#include "nodes/all_nodes.h"
 #include "nodes/kernels/simd/texture_lookup.h"
+#include "nodes/texture.h"
 #include "runtime/buffers/texture.h"
 #include "tests/support/tiles.h"
 #include "tests/support/ulps.h"
