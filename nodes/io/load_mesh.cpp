@@ -3,9 +3,10 @@
 #include "nodes/io.h"
 #include "runtime/core/node_type.h"
 #include "runtime/io/file_bytes.h"
-#include "runtime/io/obj.h"
+#include "runtime/io/mesh_readers.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace frustum {
 namespace {
@@ -18,12 +19,22 @@ struct Outputs {
   Ref<Mesh> mesh;
 };
 
+const MeshReader& reader_of(const FilePath& file) {
+  const std::string kind = extension_of(file.written);
+  std::vector<std::string> known;
+  for (const MeshReader& reader : mesh_readers()) {
+    if (reader.extension == kind) return reader;
+    known.push_back(fmt::format(".{}", reader.extension));
+  }
+  throw NodeError("unknown_format", fmt::format("{}: meshes are read from {} files, not from .{}",
+                                                file.written, fmt::join(known, ", "), kind));
+}
+
 Outputs run(const Inputs&, const Params& p, Context& ctx) {
-  if (const std::string kind = extension_of(p.file.written); !p.file.empty() && kind != "obj")
-    throw NodeError("unknown_format",
-                    fmt::format("{}: meshes are read from .obj files, not from .{}", p.file.written, kind));
+  if (p.file.empty()) throw NodeError("no_file", "no file is named");
+  const MeshReader& reader = reader_of(p.file);
   const FileBytes bytes(p.file);
-  return {std::make_shared<Mesh>(read_obj(bytes.text(), p.file, ctx))};
+  return {std::make_shared<Mesh>(reader.read(bytes.text(), p.file, ctx))};
 }
 
 }  // namespace
