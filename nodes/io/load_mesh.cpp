@@ -41,12 +41,15 @@ Outputs run(const Inputs&, const Params& p, Context& ctx) {
 
 NodeType nodes::io_load_mesh() {
   return node("io.load_mesh", run)
-      .doc("Reads a triangle mesh from a Wavefront OBJ file.")
-      .cite("Wavefront, The Advanced Visualizer: Object Files (.obj), appendix B1")
+      .doc("Reads a triangle mesh from an OBJ, PLY or STL file.")
+      .cite(
+          "Wavefront, The Advanced Visualizer: Object Files (.obj), appendix B1; Turk 1994, The PLY Polygon "
+          "File Format")
       .param("file", &Params::file,
-             "An OBJ file; polygons become triangles, usemtl gives each face its material.")
+             "A .obj, .ply or .stl file; polygons become triangles, usemtl gives each face its material.")
       .output("mesh", &Outputs::mesh,
-              "One vertex for each distinct v/vt/vn; normals that the file lacks are computed.",
+              "The vertices of the file, one for each distinct v/vt/vn of an OBJ; normals that it lacks are "
+              "computed.",
               {.space = Space::object});
 }
 

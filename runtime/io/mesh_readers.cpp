@@ -1,6 +1,8 @@
 #include "runtime/io/mesh_readers.h"
 
 #include "runtime/io/obj.h"
+#include "runtime/io/ply.h"
+#include "runtime/io/stl.h"
 
 #include <array>
 
@@ -9,6 +11,8 @@ namespace {
 
 constexpr std::array readers{
     MeshReader{"obj", "Wavefront OBJ", read_obj},
+    MeshReader{"ply", "PLY", read_ply},
+    MeshReader{"stl", "STL", read_stl},
 };
 
 }  // namespace

@@ -1,10 +1,16 @@
-// What it costs to read and check a graph file, per node.
+// What it costs to read and check a graph file, per node, and to read meshes of a million triangles.
 #include "runtime/buffers/value.h"
 #include "runtime/graph/load.h"
+#include "runtime/io/mesh_readers.h"
 
 #include <benchmark/benchmark.h>
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 namespace frustum {
 namespace {
@@ -42,6 +48,100 @@ void check_chain(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 BENCHMARK(check_chain)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
+
+// ----- meshes
+
+// A wavy sheet of (n - 1)^2 quads of two triangles; row() is given every vertex, face() every triangle.
+template <class Row, class Face>
+void sheet(int n, Row&& row, Face&& face) {
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const float u = static_cast<float>(i) / static_cast<float>(n),
+                  v = static_cast<float>(j) / static_cast<float>(n);
+      row(u, v, std::sin(7 * u) * std::cos(9 * v));
+    }
+  for (int j = 0; j + 1 < n; ++j)
+    for (int i = 0; i + 1 < n; ++i) {
+      const int a = j * n + i;
+      face(a, a + 1, a + n + 1), face(a, a + n + 1, a + n);
+    }
+}
+
+template <class T>
+void put(std::string& out, T v) {
+  out.append(reinterpret_cast<const char*>(&v), sizeof v);
+}
+
+std::string ply_text(bool binary, int n) {
+  std::string out = fmt::format(
+      "ply\nformat {} 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      binary ? "binary_little_endian" : "ascii", n * n, 2 * (n - 1) * (n - 1));
+  sheet(
+      n,
+      [&](float x, float y, float z) {
+        if (binary)
+          put(out, x), put(out, y), put(out, z);
+        else
+          out += fmt::format("{} {} {}\n", x, y, z);
+      },
+      [&](int a, int b, int c) {
+        if (binary)
+          put(out, std::uint8_t{3}), put(out, a), put(out, b), put(out, c);
+        else
+          out += fmt::format("3 {} {} {}\n", a, b, c);
+      });
+  return out;
+}
+
+std::string obj_text(int n) {
+  std::string out;
+  sheet(
+      n,
+      [&](float x, float y, float z) {
+        out += fmt::format("v {} {} {}\nvt {} {}\nvn 0 0 1\n", x, y, z, x, y);
+      },
+      [&](int a, int b, int c) {
+        out += fmt::format("f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", a + 1, b + 1, c + 1);
+      });
+  return out;
+}
+
+std::string stl_bytes(int n) {
+  std::vector<glm::vec3> p;
+  std::string out(84, ' ');
+  std::uint32_t count = 0;
+  sheet(
+      n, [&](float x, float y, float z) { p.emplace_back(x, y, z); },
+      [&](int a, int b, int c) {
+        put(out, glm::vec3(0, 0, 1));
+        for (const int i : {a, b, c}) put(out, p[static_cast<std::size_t>(i)]);
+        put(out, std::uint16_t{0});
+        ++count;
+      });
+  std::memcpy(out.data() + 80, &count, sizeof count);
+  return out;
+}
+
+// 708 x 708 vertices are 999,698 triangles. The bytes are in memory: what a file costs besides is reading it.
+void read_mesh_bytes(benchmark::State& state, std::string_view extension, const std::string& bytes) {
+  for (const MeshReader& reader : mesh_readers()) {
+    if (reader.extension != extension) continue;
+    for (auto _ : state) {
+      Context ctx;
+      benchmark::DoNotOptimize(reader.read(bytes, {"bench", "bench"}, ctx));
+    }
+  }
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes.size()));
+}
+void read_ply_binary(benchmark::State& state) { read_mesh_bytes(state, "ply", ply_text(true, 708)); }
+void read_ply_text(benchmark::State& state) { read_mesh_bytes(state, "ply", ply_text(false, 708)); }
+void read_obj_text(benchmark::State& state) { read_mesh_bytes(state, "obj", obj_text(708)); }
+void read_stl_binary(benchmark::State& state) { read_mesh_bytes(state, "stl", stl_bytes(708)); }
+BENCHMARK(read_ply_binary)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(read_ply_text)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(read_obj_text)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(read_stl_binary)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace frustum
