@@ -1,15 +1,23 @@
 #include "runtime/app/export.h"
 
 #include "runtime/app/files.h"
+#include "runtime/buffers/image.h"
 #include "runtime/core/error.h"
 #include "runtime/io/image_files.h"
+#include "runtime/io/mesh_readers.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace frustum {
 namespace {
@@ -34,6 +42,38 @@ std::string csv_row(const Json& cells) {
   std::string out;
   for (const Json& c : cells) out += (&c == &cells.front() ? "" : ",") + cell(c);
   return out + "\r\n";
+}
+
+// The records of RFC 4180 text: fields by commas, quotes doubled inside quotes.
+std::vector<std::vector<std::string>> csv_records(const std::string& text, const std::string& path) {
+  std::vector<std::vector<std::string>> records;
+  std::vector<std::string> record{""};
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"')
+      record.back() += text[++i];
+    else if (c == '"')
+      quoted = !quoted;
+    else if (quoted)
+      record.back() += c;
+    else if (c == ',')
+      record.emplace_back();
+    else if (c == '\n')
+      records.push_back(std::exchange(record, {""}));
+    else if (c != '\r')
+      record.back() += c;
+  }
+  if (quoted) throw NodeError("malformed_file", fmt::format("{}: a quote is not closed", path));
+  if (record.size() > 1 || !record.front().empty()) records.push_back(std::move(record));
+  return records;
+}
+
+Json cell_value(const std::string& text) {
+  double value = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return problem == std::errc{} && end == text.data() + text.size() && std::isfinite(value) ? Json(value)
+                                                                                            : Json(text);
 }
 
 }  // namespace
@@ -74,6 +114,38 @@ Raster load_raster(const std::string& path) { return read_image(path, path).rast
 std::string csv_text(const Json& table) {
   std::string out = csv_row(table.at("columns"));
   for (const Json& row : table.at("rows")) out += csv_row(row);
+  return out;
+}
+
+Buffer load_buffer(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  for (const MeshReader& reader : mesh_readers()) {
+    if (extension != fmt::format(".{}", reader.extension)) continue;
+    Context ctx;
+    ctx.precision = Precision::real_double;
+    return Ref<Mesh>(std::make_shared<const Mesh>(reader.read(read_text(path), {path, path}, ctx)));
+  }
+  return Ref<Image>(std::make_shared<const Image>(Image{load_raster(path)}));
+}
+
+Json csv_table(const std::string& path) {
+  Json out = {{"columns", Json::array()}, {"rows", Json::array()}};
+  std::size_t width = 0;
+  for (const auto& record : csv_records(read_text(path), path)) {
+    Json row = Json::array();
+    for (const std::string& text : record)
+      row.push_back(out["columns"].empty() ? Json(text) : cell_value(text));
+    if (out["columns"].empty()) {
+      width = row.size(), out["columns"] = std::move(row);
+    } else {
+      if (row.size() != width)
+        throw NodeError("malformed_file", fmt::format("{}: row {} has {} cells, not {}", path,
+                                                      out["rows"].size() + 1, row.size(), width));
+      out["rows"].push_back(std::move(row));
+    }
+  }
   return out;
 }
 

@@ -18,9 +18,17 @@ void save_raster(const Raster& raster, const std::string& path);
 // The pixels of an image file. Throws WorldError where it cannot be read.
 Raster load_raster(const std::string& path);
 
+// What a file holds: a mesh where its extension is that of a mesh format, else the pixels of an image. Throws
+// WorldError where it cannot be read, NodeError where it is malformed.
+Buffer load_buffer(const std::string& path);
+
 // RFC 4180, with a line of column names, from the table form of a buffer; numbers in the shortest text
 // that reads back to the same value.
 std::string csv_text(const Json& table);
+
+// The table that csv_text() wrote, {"columns", "rows"}: cells that read as numbers are numbers, "nan" and the
+// like and the rest are texts. Throws NodeError("malformed_file") for a row of another length or an open quote.
+Json csv_table(const std::string& path);
 
 // Pixels (the given sample of each) to an image file, anything else that has a table form to a .csv. Throws
 // NodeError("cannot_save") where the buffer is neither.

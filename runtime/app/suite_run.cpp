@@ -1,7 +1,7 @@
 #include "runtime/app/suite_run.h"
 
-#include "runtime/app/compare.h"
 #include "runtime/app/golden.h"
+#include "runtime/app/metrics/metrics.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -181,9 +181,8 @@ class CaseRun {
     const Difference d = compare(mine, other);
     if (!d.mismatch.empty()) return fail(fmt::format("{} against {}: {}", check.port, what, d.mismatch));
     if (d.nan != 0) return fail(fmt::format("{} against {}: {} values are NaN", check.port, what, d.nan));
-    const std::string at = d.worst ? fmt::format(" ({} at {},{}: {:.9g} and {:.9g})", d.worst->plane,
-                                                 d.worst->x, d.worst->y, d.worst->a, d.worst->b)
-                                   : "";
+    const std::string at =
+        d.worst ? fmt::format(" ({}: {:.9g} and {:.9g})", d.worst->place(), d.worst->a, d.worst->b) : "";
     const auto bound = [&](const char* metric, double value, const std::optional<double>& limit) {
       if (limit && !(value <= *limit))
         fail(fmt::format("{} against {}: {} {:.6g} is above {:g}{}", check.port, what, metric, value, *limit,
@@ -191,7 +190,12 @@ class CaseRun {
     };
     bound("rmse", d.rmse, check.rmse);
     bound("max", d.max, check.max);
-    if (!check.abs) return;
+    if (!check.abs) {
+      if (d.wrong_ids != 0)
+        fail(
+            fmt::format("{} against {}: {} of {} ids are wrong{}", check.port, what, d.wrong_ids, d.ids, at));
+      return;
+    }
     const auto beyond = static_cast<double>(count_beyond(mine, other, *check.abs));
     if (beyond > (1 - check.fraction) * static_cast<double>(d.values))
       fail(fmt::format("{} against {}: {} of {} values are more than {:g} away{}", check.port, what, beyond,

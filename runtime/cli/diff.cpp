@@ -1,13 +1,13 @@
-// frustum diff A B: how far two images are apart.
-#include "runtime/app/compare.h"
+// frustum diff A B: how far two images, meshes or tables are apart.
 #include "runtime/app/export.h"
+#include "runtime/app/metrics/metrics.h"
 #include "runtime/cli/command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 
 namespace frustum::cli {
 namespace {
@@ -17,63 +17,66 @@ struct Arguments {
   std::vector<std::string> metrics;
 };
 
-// "rmse=0.01", or "identical"; without any, the images have to be identical.
-std::vector<MetricBound> bounds(const std::vector<std::string>& texts) {
+Measured measure_files(const Arguments& args, const std::vector<std::string>& names) {
+  const auto is_table = [](const std::string& path) { return path.ends_with(".csv"); };
+  if (!is_table(args.a) || !is_table(args.b)) return measure(load_buffer(args.a), load_buffer(args.b), names);
+  return measure(compare_tables(csv_table(args.a), csv_table(args.b)), names);
+}
+
+// Without any bound, the files have to be identical.
+std::vector<MetricBound> bounds_of(const std::vector<std::string>& texts) {
   std::vector<MetricBound> out;
-  for (const std::string& t : texts) {
-    const auto equals = t.find('=');
-    MetricBound bound{t.substr(0, equals)};
-    const auto& names = metric_names();
-    if (std::find(names.begin(), names.end(), bound.metric) == names.end()) {
-      const auto near = nearest_names(bound.metric, names);
-      throw UsageError(fmt::format("no metric '{}'{}", bound.metric,
-                                   near.empty() ? "; there are rmse, max, psnr, identical"
-                                                : fmt::format("; did you mean '{}'?", near.front())));
-    }
-    if (bound.metric != "identical") {
-      const std::string number = equals == std::string::npos ? "" : t.substr(equals + 1);
-      const auto [end, problem] =
-          std::from_chars(number.data(), number.data() + number.size(), bound.tolerance);
-      if (problem != std::errc{} || end != number.data() + number.size() || !(bound.tolerance >= 0))
-        throw UsageError(fmt::format("--metric {}: expected METRIC=TOLERANCE, such as rmse=0.01", t));
-    }
-    out.push_back(bound);
-  }
+  for (const std::string& t : texts) out.push_back(parse_metric_bound(t));
   if (out.empty()) out.push_back({"identical"});
   return out;
 }
 
-std::string text_of(const Difference& d) {
+std::string text_of(const Measured& m) {
+  const Difference& d = m.difference;
   if (!d.mismatch.empty()) return d.mismatch + "\n";
   if (d.identical()) return fmt::format("identical: {} values\n", d.values);
   std::string out = fmt::format("rmse {:.6g}, max {:.6g}, psnr {:.2f} dB; {} of {} values differ", d.rmse,
                                 d.max, d.psnr, d.differing, d.values);
   if (d.nan != 0) out += fmt::format(", {} are NaN", d.nan);
-  if (d.worst)
-    out += fmt::format("\nworst: {} at {},{}: {:.9g} and {:.9g}", d.worst->plane, d.worst->x, d.worst->y,
-                       d.worst->a, d.worst->b);
+  if (d.wrong_ids != 0) out += fmt::format(", {} of {} ids are wrong", d.wrong_ids, d.ids);
+  if (d.worst) out += fmt::format("\nworst: {}: {:.9g} and {:.9g}", d.worst->place(), d.worst->a, d.worst->b);
+  for (const auto& [name, value] : m.values)
+    if (name != "rmse" && name != "max" && name != "psnr" && name != "identical")
+      out += fmt::format("\n{}: {:.6g}{}{}", name, value, find_metric(name)->unit.empty() ? "" : " ",
+                         find_metric(name)->unit);
   return out + "\n";
 }
 
 int diff(const Arguments& args, bool json) {
-  const auto wanted = bounds(args.metrics);
-  const Difference d = compare(load_raster(args.a), load_raster(args.b));
-  Json out = to_json(d), broken = Json::array();
-  std::string text = text_of(d);
-  for (const MetricBound& bound : wanted) {
-    if (holds(d, bound)) continue;
-    broken.push_back({{"metric", bound.metric}, {"tolerance", bound.tolerance}});
-    if (d.mismatch.empty() && bound.metric != "identical")
+  const auto bounds = bounds_of(args.metrics);
+  std::vector<std::string> names;
+  for (const MetricBound& b : bounds) names.push_back(b.metric);
+  const Measured m = measure_files(args, names);
+  Json out = to_json(m), failed = Json::array();
+  std::string text = text_of(m);
+  for (const MetricBound& bound : broken(m, bounds)) {
+    failed.push_back({{"metric", bound.metric}, {"tolerance", bound.tolerance}});
+    const Metric& metric = *find_metric(bound.metric);
+    if (m.difference.mismatch.empty() && !metric.yes_or_no)
       text += fmt::format("does not hold: {} {} {}\n", bound.metric,
-                          bound.metric == "psnr" ? ">=" : "<=", bound.tolerance);
+                          metric.at_least ? ">=" : "<=", bound.tolerance);
   }
-  out["pass"] = broken.empty();
-  out["broken"] = broken;
+  out["pass"] = failed.empty();
+  out["broken"] = failed;
   if (json)
     print(out);
   else
     print(text);
-  return broken.empty() ? done : check_failed;
+  return failed.empty() ? done : check_failed;
+}
+
+std::string metric_help() {
+  std::vector<std::string_view> at_most, at_least;
+  for (const Metric& m : metrics())
+    if (!m.yes_or_no) (m.at_least ? at_least : at_most).push_back(m.name);
+  return fmt::format(
+      "A bound: {} at most, {} at least, or identical. Without any: identical. NaN never passes.",
+      fmt::join(at_most, ", "), fmt::join(at_least, " and "));
 }
 
 }  // namespace
@@ -81,16 +84,15 @@ int diff(const Arguments& args, bool json) {
 void add_diff(CLI::App& app, Invocation& chosen) {
   auto args = std::make_shared<Arguments>();
   CLI::App& c =
-      add_command(app, chosen, "diff", "Measures how far two images are apart; exit 1 beyond a tolerance.",
-                  "frustum diff out/teapot.exr reference.exr --metric rmse=1e-4 --metric max=0.02",
+      add_command(app, chosen, "diff",
+                  "Measures how far two images, meshes or tables are apart; exit 1 beyond a tolerance.",
+                  "frustum diff out/teapot.exr reference.exr --metric rmse=1e-4 --metric flip=0.01",
                   [args, &chosen] { return diff(*args, chosen.json); });
-  c.add_option("a", args->a, "The first image.")->required()->type_name("A");
-  c.add_option("b", args->b, "The second image.")->required()->type_name("B");
-  c.add_option(
-       "--metric", args->metrics,
-       "A bound: rmse and max at most, psnr at least, identical. Without any: identical. NaN never passes.")
-      ->type_name("M=TOL")
-      ->allow_extra_args(false);
+  c.add_option("a", args->a, "The first file: an image, a mesh, or a table as .csv.")
+      ->required()
+      ->type_name("A");
+  c.add_option("b", args->b, "The second file, which is the reference.")->required()->type_name("B");
+  c.add_option("--metric", args->metrics, metric_help())->type_name("M=TOL")->allow_extra_args(false);
 }
 
 }  // namespace frustum::cli

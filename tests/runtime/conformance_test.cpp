@@ -1,7 +1,7 @@
 // What every node type and every example graph has to hold: walked from the registry and the folders, so
 // that a node that is added is held to it without a line here.
 #include "runtime/app/catalog.h"
-#include "runtime/app/compare.h"
+#include "runtime/app/metrics/metrics.h"
 #include "runtime/app/files.h"
 #include "runtime/app/session.h"
 #include "runtime/app/simd.h"
