@@ -23,7 +23,8 @@ double hue_deg(double a, double b) {
   return h < 0 ? h + 360 : h;
 }
 
-// The hue from h1 to h2 the shorter way round, and the hue in the middle of it; c is the product of the chromas.
+// The hue from h1 to h2 the shorter way round, and the hue in the middle of it; c is the product of the
+// chromas.
 struct Hues {
   double difference_deg, mean_deg;
 };

@@ -65,7 +65,8 @@ Difference compare(const Raster& a, const Raster& b);
 // table, in double. Kinds without a table: whether they are the same bytes.
 Difference compare(const Buffer& a, const Buffer& b);
 
-// Tables as buffers and CSV files give them, {"columns", "rows"}, cell by cell; a text is right or wrong like an id.
+// Tables as buffers and CSV files give them, {"columns", "rows"}, cell by cell; a text is right or wrong like
+// an id.
 Difference compare_tables(const Json& a, const Json& b);
 
 // Numbers further apart than `tolerance` or NaN, and wrong ids. The frames match.
