@@ -107,8 +107,9 @@ Picture noise(unsigned seed) {
 
 TEST(Flip, SamePicturesAreZero) { EXPECT_EQ(mean(flip_map(noise(1), noise(1))), 0); }
 
-// Without structure, what is left is the redistributed distance of two colours; black and white are 100 apart in
-// lightness, the farthest colours green and blue: 0.95 + (100^0.7 - 0.4 m) / (0.6 m) * 0.05 with m = 41.27.
+// Without structure, what is left is the redistributed distance of two colours; black and white are 100 apart
+// in lightness, the farthest colours green and blue: 0.95 + (100^0.7 - 0.4 m) / (0.6 m) * 0.05 with m =
+// 41.27.
 TEST(Flip, BlackAndWhiteByHand) {
   const Grid map = flip_map(uniform(0, 0, 0), uniform(1, 1, 1));
   const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
