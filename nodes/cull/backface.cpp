@@ -4,6 +4,8 @@
 #include "runtime/buffers/mesh_faces.h"
 #include "runtime/core/node_type.h"
 
+#include <algorithm>
+
 namespace frustum {
 namespace {
 
@@ -20,6 +22,7 @@ constexpr auto choices(Rays) {
 
 struct Inputs {
   Ref<Mesh> mesh;
+  std::optional<Ref<Material>> material;
 };
 struct Params {
   Side drop = Side::back;
@@ -48,8 +51,30 @@ std::vector<std::uint32_t> showing(const Mesh& mesh, const Params& p) {
   }
 }
 
+// Which faces stay whatever side they show: those of two-sided materials. Empty where there are none.
+std::vector<std::uint8_t> two_sided_faces(const Mesh& mesh) {
+  if (!mesh.materials) return {};
+  const auto& all = mesh.materials->materials;
+  const auto two_sided = [](const Material& m) { return m.two_sided; };
+  if (std::none_of(all.begin(), all.end(), two_sided)) return {};
+  const Column* column = mesh.find("material");
+  if (column == nullptr) return std::vector<std::uint8_t>(mesh.faces(), two_sided(all[0]) ? 1 : 0);
+  const auto of = column->values<std::uint32_t>();
+  std::vector<std::uint8_t> stays(mesh.faces());
+  for (std::size_t f = 0; f < stays.size(); ++f)
+    stays[f] = of[f] < all.size() && two_sided(all[of[f]]) ? 1 : 0;
+  return stays;
+}
+
 Outputs run(const Inputs& in, const Params& p, Context& ctx) {
-  const auto faces = ctx.real([&]<class R>() { return showing<R>(*in.mesh, p); });
+  if (in.material && (*in.material)->two_sided) return {in.mesh};
+  std::vector<std::uint8_t> stays;
+  if (!in.material) stays = two_sided_faces(*in.mesh);
+  auto faces = ctx.real([&]<class R>() { return showing<R>(*in.mesh, p); });
+  if (!stays.empty()) {
+    for (const std::uint32_t f : faces) stays[f] = 1;
+    faces = kernels::indices_where(stays.size(), [&](std::size_t f) { return stays[f] != 0; });
+  }
   ctx.count("triangles_culled", in.mesh->faces() - faces.size());
   if (faces.size() == in.mesh->faces()) return {in.mesh};
   return {std::make_shared<Mesh>(select_faces(*in.mesh, faces))};
@@ -59,15 +84,19 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
 
 NodeType nodes::cull_backface() {
   return node("cull.backface", run)
-      .doc("Drops the faces that turn their back to the camera, which closed opaque solids never show.")
+      .doc(
+          "Drops faces that turn their back to the camera, which closed solids never show; two-sided ones "
+          "stay.")
       .cite("Sign by exact arithmetic: Shewchuk 1997; errata E23 and E24")
       .covers(38, 39)
       .input("mesh", &Inputs::mesh, "A mesh in eye, clip, normalised device or screen space.",
              {.space = {Space::eye, Space::clip, Space::ndc, Space::screen}})
+      .input("material", &Inputs::material, "One material for everything, instead of the mesh's own.")
       .param("drop", &Params::drop, "Which side goes; edge-on faces go with either.")
       .param("projection", &Params::projection,
              "How the eye sees in eye space; other spaces know it already.")
-      .output("mesh", &Outputs::mesh, "The faces that show the other side; vertices are shared.");
+      .output("mesh", &Outputs::mesh,
+              "The faces that show the other side or are two-sided; vertices are shared.");
 }
 
 }  // namespace frustum

@@ -174,6 +174,7 @@ template <std::floating_point R>
 struct SurfaceColors {
   Triple<R> ambient{};  ///< ambient light, already times the surface's ambient and diffuse shares
   Triple<R> diffuse{}, specular{};
+  Triple<R> emission{};  ///< light of the surface's own
 };
 
 template <std::floating_point R>
@@ -181,7 +182,7 @@ struct ColorRows {
   std::array<R*, 4> plane{};  ///< R G B A; null where nobody reads it
 };
 
-/// albedo (ambient + diffuse d) + specular s with alpha 1 at the selected points; elsewhere transparent
+/// albedo (ambient + diffuse d) + specular s + emission with alpha 1 at the selected points; elsewhere transparent
 /// black, or what was there if `keep`.
 ///   albedo  three rows, or null for 1
 template <std::floating_point R>
@@ -198,6 +199,7 @@ void reflect_light(const SurfaceColors<R>& c, const LightInput<R>& light,
         color = c.ambient[k] + c.diffuse[k] * light.diffuse[k][x];
         if (albedo[k] != nullptr) color = albedo[k][x] * color;
         color = color + c.specular[k] * light.specular[k][x];
+        color = color + c.emission[k];
       }
       out.plane[k][x] = color;
     }

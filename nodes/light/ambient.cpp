@@ -12,13 +12,13 @@ struct Params {
   Color color{glm::dvec3{0.1}};
 };
 struct Outputs {
-  Ref<Light> light;
+  Ref<LightSet> light;
 };
 
 Outputs run(const Inputs&, const Params& p, Context&) {
   if (!is_radiance(p.color.rgb))
     throw NodeError("not_finite", "the colour of the light is not a finite number");
-  return {std::make_shared<Light>(Light{.kind = Light::Kind::ambient, .color = p.color.rgb})};
+  return {one_light(Light{.kind = Light::Kind::ambient, .color = p.color.rgb})};
 }
 
 }  // namespace

@@ -13,14 +13,13 @@ struct Params {
   Color color{glm::dvec3{1}};
 };
 struct Outputs {
-  Ref<Light> light;
+  Ref<LightSet> light;
 };
 
 Outputs run(const Inputs&, const Params& p, Context&) {
   const auto direction = travel_direction(p.direction);
   if (!direction) throw NodeError("zero_direction", "the direction of the light has no length");
-  return {std::make_shared<Light>(
-      Light{.kind = Light::Kind::directional, .color = p.color.rgb, .direction = *direction})};
+  return {one_light(Light{.kind = Light::Kind::directional, .color = p.color.rgb, .direction = *direction})};
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ struct Params {
   glm::dvec3 attenuation{1, 0, 0};
 };
 struct Outputs {
-  Ref<Light> light;
+  Ref<LightSet> light;
 };
 
 Outputs run(const Inputs&, const Params& p, Context&) {
@@ -22,10 +22,10 @@ Outputs run(const Inputs&, const Params& p, Context&) {
   if (!falls_off(p.attenuation))
     throw NodeError("bad_attenuation",
                     "the attenuation coefficients must be finite, not negative and not all zero");
-  return {std::make_shared<Light>(Light{.kind = Light::Kind::point,
-                                        .color = p.color.rgb,
-                                        .position = p.position,
-                                        .attenuation = p.attenuation})};
+  return {one_light(Light{.kind = Light::Kind::point,
+                          .color = p.color.rgb,
+                          .position = p.position,
+                          .attenuation = p.attenuation})};
 }
 
 }  // namespace

@@ -62,9 +62,11 @@ std::optional<AttributeDomain> domain_of(const Column& c) {
   return std::nullopt;
 }
 
+bool is_uv(const Column& c) { return is_uv_column(c.name()) && c.width() == 2; }
+
 // The names of a column's value planes (runtime/buffers/image.h).
 std::vector<std::string> value_names(const Column& c) {
-  if (c.name() == "uv" && c.width() == 2) return {"uv.u", "uv.v"};
+  if (is_uv(c)) return {c.name() + ".u", c.name() + ".v"};
   if (c.width() == 1) return {c.name()};
   const std::string prefix = c.name() == "normal" ? "N" : c.name() == "world" ? "P" : c.name();
   std::vector<std::string> names;
@@ -84,12 +86,12 @@ std::vector<Source> add_planes(const Mesh& mesh, PlaneList& planes) {
   for (const Ref<Column>& c : mesh.columns) {
     const auto domain = domain_of(*c);
     if (!domain || c->name() == "position") continue;
-    const bool slopes = c->name() == "uv" && c->width() == 2;
+    const bool slopes = is_uv(*c);
     sources.push_back({as_real<R>(c), *domain, static_cast<std::size_t>(c->width()), planes.size(), slopes});
     for (const std::string& name : value_names(*c)) planes.push_back({name, plane_kind_of<R>});
     if (slopes)
-      for (const char* name : {"uv.du_dx", "uv.dv_dx", "uv.du_dy", "uv.dv_dy"})
-        planes.push_back({name, plane_kind_of<R>});
+      for (const char* slope : {".du_dx", ".dv_dx", ".du_dy", ".dv_dy"})
+        planes.push_back({c->name() + slope, plane_kind_of<R>});
   }
   return sources;
 }

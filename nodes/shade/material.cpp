@@ -15,6 +15,8 @@ struct Params {
   Reflection model = Reflection::blinn;
   Color ambient{glm::dvec3{1}}, diffuse{glm::dvec3{0.8}}, specular{glm::dvec3{0}};
   double shininess = 32;
+  Color emission{glm::dvec3{0}};
+  bool two_sided = false;
 };
 struct Outputs {
   Ref<Material> material;
@@ -30,7 +32,14 @@ double lobe_of(const Material& m) {
 }
 
 Outputs run(const Inputs&, const Params& p, Context& ctx) {
-  const Material m{p.name, p.model, p.ambient.rgb, p.diffuse.rgb, p.specular.rgb, p.shininess};
+  const Material m{.name = p.name,
+                   .model = p.model,
+                   .ambient = p.ambient.rgb,
+                   .diffuse = p.diffuse.rgb,
+                   .specular = p.specular.rgb,
+                   .shininess = p.shininess,
+                   .emission = p.emission.rgb,
+                   .two_sided = p.two_sided};
   if (const double share = largest_reflectance(m.diffuse, m.specular, lobe_of(m)); share > 1)
     ctx.warn("makes_energy",
              fmt::format("the surface sends back {:.3g} of the light that falls on it", share));
@@ -55,6 +64,11 @@ NodeType nodes::shade_material() {
              {.range = at_least(0)})
       .param("shininess", &Params::shininess,
              "Exponent of the highlight; raising it makes the highlight smaller.", {.range = between(0, 1e6)})
+      .param("emission", &Params::emission,
+             "Light of the surface's own, added to what it reflects; it lights nothing else.",
+             {.range = at_least(0)})
+      .param("two_sided", &Params::two_sided,
+             "Whether backs are lit as if turned around; cull.backface keeps them where it is told.")
       .output("material", &Outputs::material, "The material, for shade.surface.");
 }
 

@@ -29,7 +29,7 @@ struct Inputs {
   Ref<Mesh> mesh;
   std::optional<Tiled<Image>> albedo;
   std::optional<Ref<Material>> material;
-  std::vector<Ref<Light>> lights;
+  std::vector<Ref<LightSet>> lights;
   std::optional<Ref<Camera>> camera;
 };
 struct Params {
@@ -77,9 +77,11 @@ std::vector<Ref<Material>> materials_of(const Inputs& in) {
 
 template <class R>
 Surface<R> surface_of(const Material& m, const glm::dvec3& ambient_light) {
-  Surface<R> s{{narrow<R>(m.ambient * m.diffuse * ambient_light), narrow<R>(m.diffuse), {}},
-               kernels::Highlight::none,
-               kernels::Exponent<R>(m.shininess)};
+  Surface<R> s{
+      {narrow<R>(m.ambient * m.diffuse * ambient_light), narrow<R>(m.diffuse), {}, narrow<R>(m.emission)},
+      kernels::Highlight::none,
+      kernels::Exponent<R>(m.shininess),
+      m.two_sided};
   if (m.model == Reflection::lambert || m.specular == glm::dvec3{0}) return s;
   s.colors.specular = narrow<R>(m.specular);
   s.highlight = m.model == Reflection::phong ? kernels::Highlight::phong : kernels::Highlight::blinn;
@@ -110,16 +112,19 @@ template <class R>
 Scene<R> make_scene(const Inputs& in, const Params& p) {
   Scene<R> s;
   glm::dvec3 ambient{0};
-  for (const Ref<Light>& light : in.lights) {
-    if (light->kind == Light::Kind::ambient)
-      ambient += light->color;
-    else if (light->color != glm::dvec3{0})
-      s.lights.push_back(source_of<R>(*light));
-  }
-  bool needs_eye = p.two_sided;
+  for (const Ref<LightSet>& set : in.lights)
+    for (const Light& light : set->lights) {
+      if (light.kind == Light::Kind::ambient)
+        ambient += light.color;
+      else if (light.color != glm::dvec3{0})
+        s.lights.push_back(source_of<R>(light));
+    }
+  bool needs_eye = false;
   for (const auto& m : materials_of(in)) {
-    s.surfaces.push_back(surface_of<R>(*m, ambient));
-    needs_eye = needs_eye || s.surfaces.back().highlight != kernels::Highlight::none;
+    Surface<R> surface = surface_of<R>(*m, ambient);
+    surface.two_sided = surface.two_sided || p.two_sided;
+    needs_eye = needs_eye || surface.two_sided || surface.highlight != kernels::Highlight::none;
+    s.surfaces.push_back(surface);
   }
   if (needs_eye) {
     const Camera* camera = camera_of(in);
@@ -178,12 +183,12 @@ Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
   Shader<R> shader{make_scene<R>(in, p), {}, false, {}};
   Scene<R>& s = shader.scene;
   const Mesh& mesh = *in.mesh;
-  if (p.two_sided) {
+  if (std::any_of(s.surfaces.begin(), s.surfaces.end(), [](const auto& of) { return of.two_sided; })) {
     const Ref<Column> world = world_positions<R>(mesh);
     const auto q = world->values<V3>();
     s.side.resize(mesh.faces());
     for_faces(mesh, ctx, [&](std::size_t f, const glm::uvec3& t) {
-      s.side[f] = seen_side(q[t[0]], q[t[1]], q[t[2]], s.eye);
+      s.side[f] = s.surface(f).two_sided ? seen_side(q[t[0]], q[t[1]], q[t[2]], s.eye) : R(1);
     });
   }
   if (p.interpolation == Interpolation::flat) {
@@ -231,7 +236,7 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
       s.position = {read_real(in.points, "P.x", ctx.precision), read_real(in.points, "P.y", ctx.precision),
                     read_real(in.points, "P.z", ctx.precision)};
   }
-  if (in.albedo) {
+  if (in.albedo && !in.albedo->frame().white.holds) {
     const Frame& a = in.albedo->frame();
     if (a.window != from.window || a.samples() != from.samples())
       throw NodeError("different_frames", "albedo and points have different windows or samples");
@@ -466,7 +471,8 @@ NodeType nodes::shade_surface() {
              "What is lit: each face once, each vertex (gouraud), or each point with its own normal (phong).")
       .param("rate", &Params::rate,
              "Light every sample, or once a pixel and face, at the mean of that face's samples.")
-      .param("two_sided", &Params::two_sided, "Whether faces seen from behind are lit as if turned around.")
+      .param("two_sided", &Params::two_sided,
+             "Whether all faces, not just those of two-sided materials, are lit as if turned to the camera.")
       .output("color", &Outputs::color,
               "Linear Rec.709, premultiplied; alpha 1 where a point is seen, 0 elsewhere.");
 }

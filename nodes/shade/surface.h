@@ -26,6 +26,7 @@ struct Surface {
   kernels::SurfaceColors<R> colors;
   kernels::Highlight highlight = kernels::Highlight::none;
   kernels::Exponent<R> exponent;
+  bool two_sided = false;
 };
 
 /// Everything that lights a face. Nothing that depends on a pixel.

@@ -2,15 +2,9 @@
 
 #include "nodes/texture.h"
 #include "runtime/buffers/image.h"
-#include "runtime/buffers/texture.h"
 #include "runtime/core/node_type.h"
 #include "runtime/io/color.h"
-
-#include <fmt/format.h>
-#include <tbb/parallel_for.h>
-
-#include <array>
-#include <optional>
+#include "runtime/io/image_texture.h"
 
 namespace frustum {
 namespace {
@@ -26,93 +20,13 @@ struct Outputs {
   Ref<Texture> texture;
 };
 
-// Which planes are colour: R, G, B, or one plane three times. Throws NodeError where there is neither.
-struct Source {
-  std::array<int, 3> color{};
-  std::optional<int> alpha;
-};
-
-Source find_source(const Frame& f) {
-  if (f.samples() > 1)
-    throw NodeError("sampled_image",
-                    "a texture takes one value a pixel; supersample.resolve filters samples to that");
-  if (f.window.empty()) throw NodeError("empty_image", "the image has no pixels");
-  Source s{.color = {}, .alpha = f.find("A")};
-  const auto r = f.find("R"), g = f.find("G"), b = f.find("B");
-  if (r && g && b)
-    s.color = {*r, *g, *b};
-  else if (f.planes.size() != 1)
-    throw NodeError("missing_plane", "the image needs planes R, G and B, or just one plane");
-  for (const int plane : s.color)
-    if (f.planes[static_cast<std::size_t>(plane)].kind == PlaneKind::u32)
-      throw NodeError("wrong_plane_kind", fmt::format("plane {} counts; a texture takes real numbers",
-                                                      f.planes[static_cast<std::size_t>(plane)].name));
-  return s;
-}
-
-// One row in linear light, interleaved. Straight alpha is multiplied in at the end, premultiplied taken out
-// for a curve.
-void convert_row(const Raster& raster, const Source& source, const ColorConversion& conversion, int y,
-                 std::span<float> rgba) {
-  const Frame& f = raster.frame();
-  const auto width = static_cast<std::size_t>(f.window.width());
-  std::array<std::vector<float>, 4> row;
-  for (std::size_t k = 0; k < 4; ++k) {
-    row[k].assign(width, 1.0f);
-    const std::optional<int> plane = k < 3 ? std::optional(source.color[k]) : source.alpha;
-    if (!plane) continue;
-    for (std::size_t x = 0; x < width; ++x)
-      row[k][x] = static_cast<float>(raster.value(*plane, 0, f.window.x0 + static_cast<int>(x), y));
-  }
-  const bool divides = source.alpha && f.alpha == Alpha::premultiplied && !conversion.linear();
-  const bool multiplies = source.alpha && (divides || f.alpha == Alpha::straight);
-  for (std::size_t k = 0; k < 3 && divides; ++k)
-    for (std::size_t x = 0; x < width; ++x)
-      if (row[3][x] > 0) row[k][x] /= row[3][x];
-  conversion.apply(row[0].data(), row[1].data(), row[2].data(), width);
-  for (std::size_t x = 0; x < width; ++x)
-    for (std::size_t k = 0; k < 4; ++k) {
-      const bool multiply = k < 3 && multiplies && (row[3][x] > 0 || f.alpha == Alpha::straight);
-      rgba[4 * x + k] = multiply ? row[k][x] * row[3][x] : row[k][x];
-    }
-}
-
-MipPyramid::Level first_level(const Raster& raster, const Source& source, const ColorConversion& conversion) {
-  const Rect w = raster.frame().window;
-  const std::size_t row = 4 * static_cast<std::size_t>(w.width());
-  MipPyramid::Level level{w.width(), w.height(),
-                          std::vector<float>(row * static_cast<std::size_t>(w.height()))};
-  tbb::parallel_for(0, w.height(), [&](int y) {
-    convert_row(raster, source, conversion, w.y0 + y,
-                std::span(level.rgba).subspan(row * static_cast<std::size_t>(y), row));
-  });
-  return level;
-}
-
-MipPyramid::Level next_level(const MipPyramid::Level& from) {
-  MipPyramid::Level to{std::max(1, from.width / 2), std::max(1, from.height / 2), {}};
-  const std::size_t row = 4 * static_cast<std::size_t>(to.width);
-  to.rgba.resize(row * static_cast<std::size_t>(to.height));
-  tbb::parallel_for(0, to.height, [&](int y) {
-    halve_row(from.rgba, from.width, from.height, y,
-              std::span(to.rgba).subspan(row * static_cast<std::size_t>(y), row));
-  });
-  return to;
-}
-
 Outputs run(const Inputs& in, const Params& p, Context& ctx) {
-  const Frame& f = in.image->raster.frame();
-  const Source source = find_source(f);
-  const std::string_view space = f.color_space.empty() ? linear_rec709 : f.color_space;
-  const ColorConversion conversion = ColorConfig::open({})->conversion(space, linear_rec709);
-  MipPyramid pyramid{.levels = {}, .wrap_u = p.wrap_u, .wrap_v = p.wrap_v};
-  pyramid.levels.push_back(first_level(in.image->raster, source, conversion));
-  while (p.pyramid && (pyramid.levels.back().width > 1 || pyramid.levels.back().height > 1)) {
-    ctx.poll();
-    pyramid.levels.push_back(next_level(pyramid.levels.back()));
-  }
-  ctx.count("levels", pyramid.levels.size());
-  return {std::make_shared<Texture>(Texture{std::move(pyramid)})};
+  auto texture =
+      make_texture(in.image->raster, {.wrap_u = p.wrap_u, .wrap_v = p.wrap_v, .pyramid = p.pyramid}, ctx);
+  const Rect window = in.image->raster.frame().window;
+  ctx.count("levels",
+            p.pyramid ? static_cast<std::uint64_t>(pyramid_levels(window.width(), window.height())) : 1);
+  return {std::move(texture)};
 }
 
 }  // namespace

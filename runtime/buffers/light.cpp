@@ -3,6 +3,7 @@
 #include "runtime/buffers/buffer_ops.h"
 #include "runtime/buffers/numbers.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace frustum {
@@ -13,41 +14,54 @@ constexpr std::array kind_names{"ambient", "directional", "point"};
 Json json(const glm::dvec3& v) { return {json_number(v.x), json_number(v.y), json_number(v.z)}; }
 
 struct Ops {
-  static std::size_t bytes(const Light& l) { return sizeof l; }
-  static void hash(const Light& l, Hasher& h) {
-    h.value(l.kind);
-    for (const glm::dvec3& v : {l.color, l.direction, l.position, l.attenuation})
-      h.value(v.x).value(v.y).value(v.z);
+  static std::size_t bytes(const LightSet& s) { return sizeof s + s.lights.size() * sizeof(Light); }
+  static void hash(const LightSet& s, Hasher& h) {
+    h.value(s.lights.size());
+    for (const Light& l : s.lights) {
+      h.value(l.kind);
+      for (const glm::dvec3& v : {l.color, l.direction, l.position, l.attenuation})
+        h.value(v.x).value(v.y).value(v.z);
+    }
   }
-  static Health health(const Light& l) {
-    const std::pair<std::string_view, double> values[] = {{"color", l.color.x},
-                                                          {"color", l.color.y},
-                                                          {"color", l.color.z},
-                                                          {"direction", l.direction.x},
-                                                          {"direction", l.direction.y},
-                                                          {"direction", l.direction.z},
-                                                          {"position", l.position.x},
-                                                          {"position", l.position.y},
-                                                          {"position", l.position.z},
-                                                          {"attenuation", l.attenuation.x},
-                                                          {"attenuation", l.attenuation.y},
-                                                          {"attenuation", l.attenuation.z}};
-    return health_of("light", values);
+  static Health health(const LightSet& s) {
+    Health sum;
+    for (std::size_t i = 0; i < s.lights.size(); ++i) {
+      const Light& l = s.lights[i];
+      const std::pair<std::string_view, double> values[] = {{"color", l.color.x},
+                                                            {"color", l.color.y},
+                                                            {"color", l.color.z},
+                                                            {"direction", l.direction.x},
+                                                            {"direction", l.direction.y},
+                                                            {"direction", l.direction.z},
+                                                            {"position", l.position.x},
+                                                            {"position", l.position.y},
+                                                            {"position", l.position.z},
+                                                            {"attenuation", l.attenuation.x},
+                                                            {"attenuation", l.attenuation.y},
+                                                            {"attenuation", l.attenuation.z}};
+      sum.add(health_of(s.lights.size() == 1 ? "light" : fmt::format("light {}", i), values));
+    }
+    return sum;
   }
-  static Json summary(const Light& l) {
-    Json out = {{"kind", kind_names[static_cast<std::size_t>(l.kind)]}, {"color", json(l.color)}};
-    if (l.kind == Light::Kind::directional) out["direction"] = json(l.direction);
-    if (l.kind == Light::Kind::point)
-      out["position"] = json(l.position), out["attenuation"] = json(l.attenuation);
-    return out;
+  static Json summary(const LightSet& s) {
+    Json lights = Json::array();
+    for (const Light& l : s.lights) {
+      Json one = {{"kind", kind_names[static_cast<std::size_t>(l.kind)]}, {"color", json(l.color)}};
+      if (l.kind == Light::Kind::directional) one["direction"] = json(l.direction);
+      if (l.kind == Light::Kind::point)
+        one["position"] = json(l.position), one["attenuation"] = json(l.attenuation);
+      lights.push_back(std::move(one));
+    }
+    return {{"lights", std::move(lights)}};
   }
 };
 
 }  // namespace
 
 template <>
-const BufferType& buffer_type<Light>() {
-  static const BufferType type = make_buffer_type<Light, Ops>("light", "A source of light.", "#e8d35a");
+const BufferType& buffer_type<LightSet>() {
+  static const BufferType type =
+      make_buffer_type<LightSet, Ops>("light", "Sources of light, one or all of a scene.", "#e8d35a");
   return type;
 }
 

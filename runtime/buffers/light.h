@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <vector>
 
 namespace frustum {
 
@@ -19,7 +20,16 @@ struct Light {
   glm::dvec3 attenuation{1, 0, 0};  // point: intensity is divided by x + y d + z d^2, d the distance
 };
 
+// What one link carries: all the lights of a scene, or just one.
+struct LightSet {
+  std::vector<Light> lights;
+};
+
+inline Ref<LightSet> one_light(const Light& light) {
+  return std::make_shared<const LightSet>(LightSet{{light}});
+}
+
 template <>
-const BufferType& buffer_type<Light>();
+const BufferType& buffer_type<LightSet>();
 
 }  // namespace frustum

@@ -90,7 +90,11 @@ std::string wrong_type(const Column& c, const Mesh& m) {
   }
   if (c.name() == "normal")
     return be(on_surface && real && c.width() == 3, "real x 3 on vertices or corners");
-  if (c.name() == "uv") return be(on_surface && real && c.width() == 2, "real x 2 on vertices or corners");
+  if (is_uv_column(c.name()))
+    return be(on_surface && real && c.width() == 2, "real x 2 on vertices or corners");
+  if (c.name() == "color")
+    return be(on_surface && real && (c.width() == 3 || c.width() == 4),
+              "real x 3 or 4 on vertices or corners");
   if (c.name() == "world")
     return be(c.domain() == Domain::vertex && real && c.width() == 3, "real x 3 on vertices");
   if (c.name() == "origin" || c.name() == "material")
@@ -98,26 +102,24 @@ std::string wrong_type(const Column& c, const Mesh& m) {
   return {};
 }
 
-void hash_material(const Material& m, Hasher& h) {
-  const Buffer b(std::make_shared<const Material>(m));
-  h.value(b.digest());
-}
-
 struct Ops {
   static std::size_t bytes(const Mesh& m) {
     std::size_t sum = sizeof m;
     for (const auto& c : m.columns) sum += c->bytes();
-    return sum;
+    return sum + (m.materials ? bytes_of(*m.materials) : 0);
   }
   static void parts(const Mesh& m, const std::function<void(const void*, std::size_t)>& visit) {
     for (const auto& c : m.columns) visit(c->data(), c->bytes());
+    if (!m.materials) return;
+    std::size_t textures = 0;
+    visit_textures(*m.materials,
+                   [&](const void* texture, std::size_t bytes) { visit(texture, bytes), textures += bytes; });
+    visit(m.materials.get(), bytes_of(*m.materials) - textures);
   }
   static void hash(const Mesh& m, Hasher& h) {
     h.value(m.columns.size());
     for (const auto& c : m.columns) c->hash(h);
-    h.value(m.materials ? m.materials->materials.size() : 0);
-    if (m.materials)
-      for (const Material& material : m.materials->materials) hash_material(material, h);
+    hash_materials(m.materials ? *m.materials : MaterialSet{}, h);
     h.value(m.camera != nullptr);
     if (m.camera) h.value(Buffer(m.camera).digest());
     h.value(m.closed ? (*m.closed ? 1 : 0) : 2);
@@ -125,6 +127,7 @@ struct Ops {
   static Health health(const Mesh& m) {
     Health sum;
     for (const auto& c : m.columns) sum.add(c->health());
+    if (m.materials) sum.add(health_of_materials(*m.materials));
     return sum;
   }
   static Json summary(const Mesh& m) {

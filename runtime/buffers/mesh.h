@@ -18,7 +18,8 @@ namespace frustum {
 //   position   vertex           real x 3, 4   in its space(); width 4 in clip (x y z w) and screen          yes
 //                                             (x_px, y_px, z, 1/w) space
 //   normal     vertex, corner   real x 3      unit length, world space (object space before a transform)    no
-//   uv         vertex, corner   real x 2      texture coordinates                                           no
+//   uv         vertex, corner   real x 2      texture coordinates; further sets are uv1, uv2 ...            no
+//   color      vertex, corner   real x 3, 4   linear Rec.709 (and opacity), scales the materials' colours   no
 //   world      vertex           real x 3      position in world space, kept from project.view on            no
 //   origin     face             u32           which triangle of the source mesh this face comes from        no: itself
 //   material   face             u32           index into materials                                          no: 0

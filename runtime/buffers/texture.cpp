@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <mutex>
+
 namespace frustum {
 namespace {
 
@@ -28,6 +30,16 @@ Health health_of(const MipPyramid& p) {
     }));
   }
   return sum;
+}
+
+void hash_source(const Checker& c, Hasher& h) {
+  h.value(c.scale);
+  for (const glm::dvec3& v : {c.even, c.odd}) h.value(v.x).value(v.y).value(v.z);
+}
+
+void hash_source(const MipPyramid& p, Hasher& h) {
+  h.value(p.wrap_u).value(p.wrap_v).value(p.levels.size());
+  for (const auto& level : p.levels) h.value(level.width).value(level.height).span<float>(level.rgba);
 }
 
 Json summary_of(const Checker& c) {
@@ -58,32 +70,47 @@ Json summary_of(const MipPyramid& p) {
 }
 
 struct Ops {
-  static std::size_t bytes(const Texture& t) {
-    std::size_t sum = sizeof t;
-    if (const auto* p = std::get_if<MipPyramid>(&t.source))
-      for (const auto& level : p->levels) sum += level.rgba.size() * sizeof(float);
-    return sum;
-  }
-  static void hash(const Texture& t, Hasher& h) {
-    h.value(t.source.index());
-    if (const auto* c = std::get_if<Checker>(&t.source)) {
-      h.value(c->scale);
-      for (const glm::dvec3& v : {c->even, c->odd}) h.value(v.x).value(v.y).value(v.z);
-    }
-    if (const auto* p = std::get_if<MipPyramid>(&t.source)) {
-      h.value(p->wrap_u).value(p->wrap_v).value(p->levels.size());
-      for (const auto& level : p->levels) h.value(level.width).value(level.height).span<float>(level.rgba);
-    }
-  }
-  static Health health(const Texture& t) {
-    return std::visit([](const auto& source) { return health_of(source); }, t.source);
-  }
+  static std::size_t bytes(const Texture& t) { return t.bytes(); }
+  static void hash(const Texture& t, Hasher& h) { h.value(t.digest()); }
+  static Health health(const Texture& t) { return t.health(); }
   static Json summary(const Texture& t) {
     return std::visit([](const auto& source) { return summary_of(source); }, t.source);
   }
 };
 
 }  // namespace
+
+struct Texture::Memo {
+  std::once_flag hashed, counted;
+  Digest digest;
+  Health health;
+};
+
+Texture::Texture(std::variant<Checker, MipPyramid> from)
+    : source(std::move(from)), memo_(std::make_shared<Memo>()) {}
+
+std::size_t Texture::bytes() const {
+  std::size_t sum = sizeof *this;
+  if (const auto* p = std::get_if<MipPyramid>(&source))
+    for (const auto& level : p->levels) sum += level.rgba.size() * sizeof(float);
+  return sum;
+}
+
+Digest Texture::digest() const {
+  std::call_once(memo_->hashed, [this] {
+    Hasher h;
+    h.value(source.index());
+    std::visit([&](const auto& s) { hash_source(s, h); }, source);
+    memo_->digest = h.done();
+  });
+  return memo_->digest;
+}
+
+Health Texture::health() const {
+  std::call_once(memo_->counted,
+                 [this] { memo_->health = std::visit([](const auto& s) { return health_of(s); }, source); });
+  return memo_->health;
+}
 
 template <>
 const BufferType& buffer_type<Texture>() {

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -36,8 +37,22 @@ struct MipPyramid {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
 };
 
-struct Texture {
+// Immutable once published. Materials share textures and meshes share materials, so digest and health of the
+// texels are found once for each texture, however many buffers it is part of; call them on published textures
+// only.
+class Texture {
+ public:
+  Texture(std::variant<Checker, MipPyramid> from);
+
   std::variant<Checker, MipPyramid> source;
+
+  std::size_t bytes() const;
+  Digest digest() const;
+  Health health() const;
+
+ private:
+  struct Memo;
+  std::shared_ptr<Memo> memo_;
 };
 
 template <>

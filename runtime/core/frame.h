@@ -50,9 +50,12 @@ struct SamplePattern {
   std::vector<std::uint16_t> x{2048}, y{2048};  // [sample][y mod period][x mod period]
 
   std::size_t index(int sample, int px, int py) const {
-    const int u = px & (period - 1), v = py & (period - 1);  // period is a power of two; right for negative px, py too
-    return (static_cast<std::size_t>(sample) * static_cast<std::size_t>(period) + static_cast<std::size_t>(v)) *
-               static_cast<std::size_t>(period) + static_cast<std::size_t>(u);
+    const int u = px & (period - 1),
+              v = py & (period - 1);  // period is a power of two; right for negative px, py too
+    return (static_cast<std::size_t>(sample) * static_cast<std::size_t>(period) +
+            static_cast<std::size_t>(v)) *
+               static_cast<std::size_t>(period) +
+           static_cast<std::size_t>(u);
   }
 };
 
@@ -76,12 +79,28 @@ using PlaneList = std::vector<Plane>;
 
 enum class Alpha : std::uint8_t { none, straight, premultiplied };
 
+// What the maker of pixels knows of them before it makes them. A copy of it says nothing: who copies a frame
+// fills it with other pixels.
+struct OwnFact {
+  bool holds = false;
+
+  OwnFact(bool known = false) : holds(known) {}
+  OwnFact(const OwnFact&) noexcept {}
+  OwnFact(OwnFact&&) noexcept = default;
+  OwnFact& operator=(const OwnFact&) noexcept {
+    holds = false;
+    return *this;
+  }
+  OwnFact& operator=(OwnFact&&) noexcept = default;
+};
+
 struct Frame {
   Rect window = {};                 // absolute pixels; row 0 on top
   Ref<SamplePattern> pattern = {};  // null: one value a pixel
   PlaneList planes = {};
-  std::string color_space = {};     // a name of the colour configuration; empty for data that is no colour
+  std::string color_space = {};  // a name of the colour configuration; empty for data that is no colour
   Alpha alpha = Alpha::none;
+  OwnFact white = {};  // R, G, B and A are 1 wherever A is not 0: who scales by them need not read them
 
   int samples() const { return pattern ? pattern->samples : 1; }
   std::optional<int> find(std::string_view plane) const {

@@ -268,7 +268,7 @@ TEST(Values, ACameraMayLookToInfinityButNotFromNaN) {
 TEST(Values, EveryKindIsDescribed) {
   for (const BufferType* t :
        {&buffer_type<Mesh>(), &buffer_type<Image>(), &buffer_type<Depth>(), &buffer_type<Visibility>(),
-        &buffer_type<SamplePattern>(), &buffer_type<Camera>(), &buffer_type<Light>(),
+        &buffer_type<SamplePattern>(), &buffer_type<Camera>(), &buffer_type<LightSet>(),
         &buffer_type<Material>(), &buffer_type<Texture>(), &buffer_type<Surface>(), &buffer_type<Number>(),
         &buffer_type<Matrix>(), &buffer_type<Table>()}) {
     EXPECT_FALSE(t->name.empty());
@@ -284,6 +284,36 @@ TEST(Texture, DigestTellsLevelsApart) {
   MipPyramid bad = one;
   bad.levels[0].rgba[5] = inf;
   EXPECT_EQ(buffer(Texture{bad}).health().first, "level 0, texel 0,1");
+}
+
+TEST(Material, ASharedTextureCountsOnceAndItsTexelsAreOfTheDigest) {
+  const auto texture = [](float texel) {
+    return std::make_shared<const Texture>(MipPyramid{{{8, 8, std::vector<float>(256, texel)}}});
+  };
+  const auto mesh = [](Ref<Texture> a, Ref<Texture> b) {
+    Mesh m;
+    m.columns = {Column::make<glm::vec3>("position", Domain::vertex, 0, Space::world),
+                 Column::make<glm::uvec3>("triangle", Domain::face, 0)};
+    m.materials = std::make_shared<MaterialSet>(
+        MaterialSet{{Material{.texture = std::move(a)}, Material{.texture = std::move(b)}}});
+    return buffer(m);
+  };
+  const auto one = texture(0.5f), two = texture(0.5f);
+  EXPECT_EQ(mesh(one, two).bytes() - mesh(one, one).bytes(), one->bytes());
+  EXPECT_EQ(mesh(one, two).digest(), mesh(one, one).digest()) << "sharing is no content";
+  EXPECT_NE(mesh(one, texture(0.25f)).digest(), mesh(one, one).digest());
+  EXPECT_FALSE(mesh(one, texture(inf)).health().finite());
+  std::size_t sum = 0;
+  const Buffer b = mesh(one, one);
+  b.type().parts(b.data(), [&](const void*, std::size_t bytes) { sum += bytes; });
+  EXPECT_EQ(sum + sizeof(Mesh), b.bytes());
+}
+
+TEST(Material, UvColumnsHaveNumbers) {
+  EXPECT_EQ(uv_column_name(0), "uv");
+  EXPECT_EQ(uv_column_name(12), "uv12");
+  for (const char* name : {"uv", "uv1", "uv12"}) EXPECT_TRUE(is_uv_column(name)) << name;
+  for (const char* name : {"u", "uvw", "uv0", "uv-1", "uv1a"}) EXPECT_FALSE(is_uv_column(name)) << name;
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ struct MeshCameraIn {
   Ref<Camera> camera;
 };
 struct LightOut {
-  Ref<Light> light;
+  Ref<LightSet> light;
 };
 struct ImageOut {
   Tiled<Image> image;
@@ -262,7 +262,7 @@ namespace surface {
 struct Inputs {
   Tiled<Visibility> hits;
   std::optional<Tiled<Image>> albedo;
-  std::vector<Ref<Light>> lights;
+  std::vector<Ref<LightSet>> lights;
 };
 enum class Interpolation : std::uint8_t { flat, gouraud, phong };
 constexpr auto choices(Interpolation) {

@@ -161,7 +161,8 @@ void reflect(const SurfaceColors<float>& c, const LightInput<float>& light,
       V color = hn::Add(hn::Set(d, c.ambient[k]),
                         hn::Mul(hn::Set(d, c.diffuse[k]), hn::LoadU(d, light.diffuse[k] + x)));
       if (albedo[k] != nullptr) color = hn::Mul(hn::LoadU(d, albedo[k] + x), color);
-      put(k, hn::Add(color, hn::Mul(hn::Set(d, c.specular[k]), hn::LoadU(d, light.specular[k] + x))));
+      color = hn::Add(color, hn::Mul(hn::Set(d, c.specular[k]), hn::LoadU(d, light.specular[k] + x)));
+      put(k, hn::Add(color, hn::Set(d, c.emission[k])));
     }
     if (out.plane[3] != nullptr) put(3, hn::Set(d, 1.0F));
   }

@@ -40,6 +40,25 @@ TEST(CullBackface, KeepsCounterClockwiseFacesInEverySpace) {
   EXPECT_EQ(fronts<glm::vec4>({{0, 9, 0, 1}, {9, 9, 0, 1}, {0, 0, 0, 1}}, Space::screen), first);
 }
 
+TEST(CullBackface, TwoSidedMaterialsStay) {
+  auto m = std::make_shared<Mesh>(test::mesh_of<glm::vec3>({{0, 0, -2}, {1, 0, -2}, {0, 1, -2}},
+                                                           {{0, 2, 1}, {0, 1, 2}, {0, 2, 1}}, Space::eye));
+  const std::uint32_t material[] = {1, 0, 0};
+  m->columns.push_back(Column::make<std::uint32_t>("material", Domain::face, material));
+  auto set = std::make_shared<MaterialSet>();
+  set->materials = {Material{}, Material{.two_sided = true}};
+  m->materials = set;
+  const Ref<Mesh> mesh = m;
+  EXPECT_EQ(test::column<std::uint32_t>(*culled(mesh), "origin"), (std::vector<std::uint32_t>{0, 1}));
+  const auto with = [&](bool two_sided) {
+    const Ref<Material> one = std::make_shared<const Material>(Material{.two_sided = two_sided});
+    const test::NodeInputs in = {{mesh}, {one}};
+    return test::run_node(nodes::cull_backface(), Json::object(), in).at(0).as<Mesh>();
+  };
+  EXPECT_EQ(test::column<std::uint32_t>(*with(false), "origin"), (std::vector<std::uint32_t>{1}));
+  EXPECT_EQ(with(true)->faces(), 3u);
+}
+
 // E23: the sign of n_z is wrong in perspective off the axis, where the plane test is right.
 TEST(CullBackface, SeesPerspectiveFromTheEyeAndNotAlongTheAxis) {
   // Far to the left, faces whose normals are (0.5, 0, -0.1) and its opposite: the eye is on the side of the first, although

@@ -199,7 +199,7 @@ TEST(LightingSimd, EveryTargetHasTheBitsOfTheScalarTwin) {
               if (!which.has(x))
                 for (std::size_t k = 0; k < 6; ++k) out[k][x] = 0;
             const kernels::SurfaceColors<float> colors{
-                {0.1F, 0.2F, 0.3F}, {1, 0.5F, 0.25F}, {0.4F, 0.4F, 0.4F}};
+                {0.1F, 0.2F, 0.3F}, {1, 0.5F, 0.25F}, {0.4F, 0.4F, 0.4F}, {0.7F, 0, 1e-3F}};
             reflect(colors, light, turned ? std::array<const float*, 3>{} : in.three(7), which, turned, n,
                     kernels::ColorRows<float>{{out[6].data(), out[7].data(), out[8].data(), out[9].data()}});
           };

@@ -8,10 +8,12 @@ namespace frustum {
 namespace {
 
 TEST(LightAmbient, HoldsItsColour) {
-  const auto light =
-      test::run_geometry(nodes::light_ambient(), R"({"color": [0.08, 0.09, 0.12]})", {}).at(0).as<Light>();
-  EXPECT_EQ(light->kind, Light::Kind::ambient);
-  EXPECT_EQ(light->color, glm::dvec3(0.08, 0.09, 0.12));
+  const auto light = test::run_geometry(nodes::light_ambient(), R"({"color": [0.08, 0.09, 0.12]})", {})
+                         .at(0)
+                         .as<LightSet>()
+                         ->lights.at(0);
+  EXPECT_EQ(light.kind, Light::Kind::ambient);
+  EXPECT_EQ(light.color, glm::dvec3(0.08, 0.09, 0.12));
 }
 
 TEST(LightAmbient, NeverDarkens) {

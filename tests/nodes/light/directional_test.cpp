@@ -14,10 +14,11 @@ TEST(LightDirectional, DirectionHasUnitLengthWhateverItsSize) {
     const auto light =
         test::run_geometry(nodes::light_directional(), std::string(R"({"direction": )") + direction + "}", {})
             .at(0)
-            .as<Light>();
-    EXPECT_EQ(light->kind, Light::Kind::directional);
-    EXPECT_DOUBLE_EQ(light->direction.y, -0.6) << direction;
-    EXPECT_DOUBLE_EQ(light->direction.z, 0.8) << direction;
+            .as<LightSet>()
+            ->lights.at(0);
+    EXPECT_EQ(light.kind, Light::Kind::directional);
+    EXPECT_DOUBLE_EQ(light.direction.y, -0.6) << direction;
+    EXPECT_DOUBLE_EQ(light.direction.z, 0.8) << direction;
   }
 }
 

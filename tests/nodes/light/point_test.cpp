@@ -11,10 +11,11 @@ TEST(LightPoint, HoldsPlaceAndAttenuation) {
   const auto light =
       test::run_geometry(nodes::light_point(), R"({"position": [1, 2, 3], "attenuation": [0, 0, 2]})", {})
           .at(0)
-          .as<Light>();
-  EXPECT_EQ(light->kind, Light::Kind::point);
-  EXPECT_EQ(light->position, glm::dvec3(1, 2, 3));
-  EXPECT_EQ(light->attenuation, glm::dvec3(0, 0, 2));
+          .as<LightSet>()
+          ->lights.at(0);
+  EXPECT_EQ(light.kind, Light::Kind::point);
+  EXPECT_EQ(light.position, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(light.attenuation, glm::dvec3(0, 0, 2));
 }
 
 TEST(LightPoint, AnAttenuationOfZeroWouldDivideByZero) {

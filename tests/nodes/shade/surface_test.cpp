@@ -70,7 +70,7 @@ Shot sphere(int size, int samples, PlaneKind kind = PlaneKind::f32) {
 }
 
 Buffer directional(const glm::dvec3& direction) {
-  return std::make_shared<const Light>(Light{.kind = Light::Kind::directional, .direction = direction});
+  return one_light({.kind = Light::Kind::directional, .direction = direction});
 }
 
 Buffer white(Reflection model = Reflection::lambert, double specular = 0) {
@@ -128,6 +128,55 @@ TEST(ShadeSurface, MaterialsFollowFacesAndAlbedoScalesThem) {
   EXPECT_EQ(half.at<float>(0, 0, 10, 20), 0.5F * plain.at<float>(0, 0, 10, 20));
   EXPECT_GT(plain.at<float>(1, 0, 20, 10), 0.5F) << "face 1 is green";
   EXPECT_GT(plain.at<float>(0, 0, 16, 15), 0.4F) << "with a white highlight in the middle";
+}
+
+TEST(ShadeSurface, EmissionIsAddedAndWhatIsKnownToBeWhiteIsNotRead) {
+  const Shot shot = sphere(16, 1);
+  auto mesh = std::make_shared<Mesh>(*shot.mesh);
+  auto set = std::make_shared<MaterialSet>(*mesh->materials);
+  set->materials[0].emission = {0.25, 0, 4};
+  mesh->materials = set;
+  const test::NodeInputs in{
+      {"points", {shot.points}}, {"mesh", {shot.mesh}}, {"lights", {directional({0, 0, -1})}}};
+  auto glowing = in;
+  glowing["mesh"] = {Ref<Mesh>(mesh)};
+  const Raster plain = test::PixelRun(nodes::shade_surface(), "{}", in).whole();
+  const Raster glows = test::PixelRun(nodes::shade_surface(), "{}", glowing).whole();
+  EXPECT_EQ(glows.at<float>(0, 0, 5, 10), plain.at<float>(0, 0, 5, 10) + 0.25F);
+  EXPECT_EQ(glows.at<float>(2, 0, 5, 10), 4.0F);
+  EXPECT_EQ(glows.at<float>(2, 0, 10, 5), plain.at<float>(2, 0, 10, 5)) << "the other material";
+}
+
+TEST(ShadeSurface, LightsOfOneLinkAndOfSeveralAreTheSame) {
+  const Shot shot = sphere(16, 1);
+  const Light a{.kind = Light::Kind::directional, .color = glm::dvec3{0.5}, .direction = {0, 0, -1}},
+      b{.kind = Light::Kind::point, .position = {0, 1, 3}}, c{.kind = Light::Kind::ambient};
+  const auto both = std::make_shared<const LightSet>(LightSet{{a, b, c}});
+  const auto picture = [&](std::vector<Buffer> lights) {
+    return Buffer(std::make_shared<const Image>(Image{
+                      test::PixelRun(nodes::shade_surface(), "{}",
+                                     {{"points", {shot.points}}, {"mesh", {shot.mesh}}, {"lights", lights}})
+                          .whole()}))
+        .digest();
+  };
+  EXPECT_EQ(picture({both}), picture({one_light(a), one_light(b), one_light(c)}));
+  EXPECT_NE(picture({both}), picture({one_light(a), one_light(b)}));
+}
+
+TEST(ShadeSurface, OnlyTwoSidedMaterialsAreLitFromBehind) {
+  const Shot shot = sphere(16, 1);
+  auto mesh = std::make_shared<Mesh>(*shot.mesh);
+  auto set = std::make_shared<MaterialSet>(*mesh->materials);
+  set->materials[0].two_sided = true;
+  mesh->materials = set;
+  mesh->camera = std::make_shared<Camera>(Camera{.eye = {0, 0, -1000}});  // behind both faces
+  const Raster image =
+      test::PixelRun(
+          nodes::shade_surface(), "{}",
+          {{"points", {shot.points}}, {"mesh", {Ref<Mesh>(mesh)}}, {"lights", {directional({0, 0, 1})}}})
+          .whole();
+  EXPECT_GT(image.at<float>(0, 0, 5, 10), 0.5F) << "face 0 is turned to the eye, and to the light";
+  EXPECT_EQ(image.at<float>(1, 0, 10, 5), 0.0F) << "face 1 is not";
 }
 
 TEST(ShadeSurface, OnceAPixelGivesEverySampleOfAFaceOneColour) {
@@ -227,8 +276,7 @@ TEST(ShadeSurface, AFaceSeenFromBehindIsLitOnlyWithTwoSides) {
 
 TEST(ShadeSurface, AmbientLightAddsWhateverElseThereIs) {
   const Shot shot = sphere(16, 1);
-  const Buffer ambient =
-      std::make_shared<const Light>(Light{.kind = Light::Kind::ambient, .color = {0.25, 0.5, 0}});
+  const Buffer ambient = one_light({.kind = Light::Kind::ambient, .color = {0.25, 0.5, 0}});
   const test::NodeInputs base{{"points", {shot.points}}, {"mesh", {shot.mesh}}, {"material", {white()}}};
   auto in = base;
   in["lights"] = {ambient};

@@ -1,6 +1,7 @@
 #include "nodes/texture/image.h"
 
 #include "nodes/io.h"
+#include "nodes/kernels/image_pyramid.h"
 #include "nodes/texture.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/texture.h"
@@ -36,7 +37,7 @@ TEST(TextureImage, CellsCoverEveryTexelOnce) {
     const int m = std::max(1, n / 2);
     std::vector<double> covered(static_cast<std::size_t>(n));
     for (int i = 0; i < m; ++i) {
-      const CellSpan s = cell_span(i, n, m);
+      const kernels::CellSpan s = kernels::cell_span(i, n, m);
       double sum = 0;
       for (int k = s.first; k <= s.last; ++k) {
         const double part = k == s.first ? s.first_part : k == s.last ? s.last_part : 1;
@@ -48,11 +49,20 @@ TEST(TextureImage, CellsCoverEveryTexelOnce) {
   }
 }
 
+TEST(TextureImage, SidesHalveUntilBothAreOne) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {3, 7}, {8, 5}, {1, 9}}) {
+    const auto p =
+        texture_of(constant({0, 0, width, height}, {{"R"}, {"G"}, {"B"}}, {1, 1, 1}, "", Alpha::none));
+    EXPECT_EQ(static_cast<int>(p.levels.size()), pyramid_levels(width, height)) << width << " " << height;
+    EXPECT_EQ(p.levels.back().width * p.levels.back().height, 1);
+  }
+}
+
 TEST(TextureImage, HalvesByArea) {
   const float row[] = {1, 0, 0, 1, 2, 0, 0, 1, 6, 0,
                        0, 1, 8, 0, 0, 1, 3, 0, 0, 1};  // five texels, R = 1 2 6 8 3
   float out[8];
-  halve_row(row, 5, 1, 0, out);
+  kernels::halve_row(row, 5, 1, 0, out);
   EXPECT_FLOAT_EQ(out[0], (1 + 2 + 6 * 0.5f) / 2.5f);
   EXPECT_FLOAT_EQ(out[4], (6 * 0.5f + 8 + 3) / 2.5f);
   EXPECT_EQ(out[3], 1);

@@ -2,6 +2,7 @@
 // scalar twins.
 #include "nodes/kernels/simd/texture_lookup.h"
 #include "nodes/texture.h"
+#include "runtime/buffers/mesh.h"
 #include "runtime/buffers/texture.h"
 #include "tests/support/tiles.h"
 #include "tests/support/ulps.h"
@@ -170,6 +171,111 @@ TEST(TextureSample, KeepsTheLawOfTiles) {
       EXPECT_EQ(test::break_of_tile_law(
                     {nodes::texture_sample(), filter, {{"points", {points}}, {"texture", {t}}}}),
                 "");
+}
+
+// ----- the node, from materials
+
+// A texture of one colour.
+Ref<Texture> flat_texture(float r, float g, float b) {
+  return texture(MipPyramid{.levels = {{1, 1, {r, g, b, 1}}}});
+}
+
+// Points of faces 0 to 3 in vertical stripes of three pixels, nothing in every fifth column.
+Ref<Image> striped_points(bool with_uv1, bool with_color) {
+  Frame f{.window = {0, 0, 30, 4}, .planes = {{"id", PlaneKind::u32}}};
+  for (const char* name : {"uv.u", "uv.v", "uv.du_dx", "uv.dv_dx", "uv.du_dy", "uv.dv_dy"})
+    f.planes.push_back({name});
+  if (with_uv1)
+    for (const char* name : {"uv1.u", "uv1.v", "uv1.du_dx", "uv1.dv_dx", "uv1.du_dy", "uv1.dv_dy"})
+      f.planes.push_back({name});
+  if (with_color)
+    for (const char* name : {"color.x", "color.y", "color.z"}) f.planes.push_back({name});
+  Raster r(f);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 30; ++x) {
+      r.view().row<std::uint32_t>(0, 0, y)[x] = x % 5 == 4 ? no_face : static_cast<std::uint32_t>(x / 3 % 4);
+      const auto put = [&](std::string_view plane, float v) {
+        if (const auto i = f.find(plane)) r.view().row<float>(*i, 0, y)[x] = v;
+      };
+      put("uv.u", 0.25F), put("uv.v", 0.25F), put("uv1.u", 0.75F), put("uv1.v", 0.25F);
+      put("color.x", 0.5F), put("color.y", 1), put("color.z", 0.25F);
+    }
+  return std::make_shared<Image>(Image{r});
+}
+
+Ref<Mesh> dressed_mesh(std::vector<Material> materials, std::vector<std::uint32_t> of) {
+  auto m = std::make_shared<Mesh>();
+  const glm::vec3 position[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<glm::uvec3> triangle(of.size(), glm::uvec3(0, 1, 2));
+  m->columns = {Column::make<glm::vec3>("position", Domain::vertex, position, Space::world),
+                Column::make<glm::uvec3>("triangle", Domain::face, std::span<const glm::uvec3>(triangle)),
+                Column::make<std::uint32_t>("material", Domain::face, std::span<const std::uint32_t>(of))};
+  m->materials = std::make_shared<MaterialSet>(MaterialSet{std::move(materials)});
+  return m;
+}
+
+TEST(TextureSample, EachFaceTakesTheTextureOfItsMaterial) {
+  const std::vector<Material> materials = {Material{.texture = flat_texture(1, 0, 0)}, Material{},
+                                           Material{.texture = flat_texture(0, 0.5F, 0)}};
+  const auto mesh = dressed_mesh(materials, {2, 0, 1, 0});
+  const glm::vec3 expected[4] = {{0, 0.5F, 0}, {1, 0, 0}, {1, 1, 1}, {1, 0, 0}};
+  for (const bool with_color : {false, true}) {
+    const auto points = striped_points(false, with_color);
+    const glm::vec3 tint = with_color ? glm::vec3(0.5F, 1, 0.25F) : glm::vec3(1);
+    const test::PixelRun run(nodes::texture_sample(), "{}", {{"points", {points}}, {"mesh", {mesh}}});
+    EXPECT_EQ(test::break_of_tile_law(run), "");
+    const Raster image = run.whole();
+    for (int x = 0; x < 30; ++x) {
+      const bool covered = x % 5 != 4;
+      for (int k = 0; k < 3; ++k)
+        EXPECT_EQ(image.at<float>(k, 0, x, 2), covered ? expected[x / 3 % 4][k] * tint[k] : 0.0F)
+            << x << " " << k;
+      EXPECT_EQ(image.at<float>(3, 0, x, 2), covered ? 1.0F : 0.0F);
+    }
+  }
+}
+
+TEST(TextureSample, MaterialsChooseTheirCoordinatesAndMoveThem) {
+  // Four texels: red and green above, blue and white below.
+  const auto four = texture(MipPyramid{.levels = {{2, 2, {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 1, 1, 1, 1}}}});
+  glm::dmat3 up(1);
+  up[2] = {0, 0.5, 1};
+  const std::vector<Material> materials = {Material{.texture = four}, Material{.texture = four, .uv_set = 1},
+                                           Material{.texture = four, .texture_from_uv = up}};
+  const auto mesh = dressed_mesh(materials, {0, 1, 2, 0});
+  for (const Precision precision : {Precision::single, Precision::real_double}) {
+    const test::PixelRun run(nodes::texture_sample(), R"({"filter": "nearest"})",
+                             {{"points", {striped_points(true, false)}}, {"mesh", {mesh}}}, precision);
+    EXPECT_EQ(test::break_of_tile_law(run), "");
+    const Raster image = run.whole();
+    const auto color = [&](int x) {
+      return glm::dvec3(image.value(0, 0, x, 1), image.value(1, 0, x, 1), image.value(2, 0, x, 1));
+    };
+    EXPECT_EQ(color(0), glm::dvec3(0, 0, 1)) << "(0.25, 0.25)";
+    EXPECT_EQ(color(3), glm::dvec3(1, 1, 1)) << "(0.75, 0.25)";
+    EXPECT_EQ(color(6), glm::dvec3(1, 0, 0)) << "(0.25, 0.75)";
+  }
+}
+
+TEST(TextureSample, CoordinatesAreAskedForWhereATextureNeedsThem) {
+  const Ref<Image> ids = std::make_shared<Image>(
+      Image{Raster(Frame{.window = {0, 0, 4, 4}, .planes = {{"id", PlaneKind::u32}}})});
+  const auto code_of = [&](test::NodeInputs in) -> std::string {
+    in["points"] = {ids};
+    try {
+      test::PixelRun(nodes::texture_sample(), "{}", std::move(in));
+    } catch (const NodeError& e) {
+      return e.code;
+    }
+    return "";
+  };
+  const std::vector<Material> materials = {Material{}, Material{.texture = flat_texture(1, 0, 0)}};
+  EXPECT_EQ(code_of({{"mesh", {dressed_mesh(materials, {0, 0})}}}), "") << "no face has the texture";
+  EXPECT_EQ(code_of({{"mesh", {dressed_mesh(materials, {0, 1})}}}), "missing_uv");
+  EXPECT_EQ(code_of({{"mesh", {dressed_mesh(materials, {0, 2})}}}), "bad_material");
+  EXPECT_EQ(code_of({}), "missing_texture");
+  const Ref<Material> plain = std::make_shared<Material>();
+  EXPECT_EQ(code_of({{"mesh", {dressed_mesh(materials, {0, 1})}}, {"material", {plain}}}), "");
 }
 
 TEST(TextureSample, AConstantTextureGivesItsBitsAndNothingWhereNothingIsSeen) {
