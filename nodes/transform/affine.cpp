@@ -1,5 +1,6 @@
 #include "nodes/transform/affine.h"
 
+#include "nodes/kernels/move_points.h"
 #include "nodes/transform.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/surface.h"
@@ -170,7 +171,7 @@ Mesh mirrored_faces(Mesh mesh) {
     auto triangle = Column::make<glm::uvec3>("triangle", Domain::face, column->rows());
     const auto from = column->values<glm::uvec3>();
     const auto to = triangle->values<glm::uvec3>();
-    for (std::size_t f = 0; f < from.size(); ++f) to[f] = transform::reversed(from[f]);
+    for (std::size_t f = 0; f < from.size(); ++f) to[f] = kernels::reversed(from[f]);
     column = std::move(triangle);
   }
   return mesh;
@@ -190,12 +191,12 @@ Ref<Mesh> moved(const Mesh& mesh, const kernels::Affine& map, Context& ctx) {
     using Point = glm::vec<3, R>;
     const auto from = mesh.real<R>("position");
     auto to = Column::make<Point>("position", Domain::vertex, from->rows(), Space::world);
-    transform::map_points<R>(map, from->template values<Point>(), to->template values<Point>());
+    kernels::map_points<R>(map, from->template values<Point>(), to->template values<Point>());
     *out = mesh.with(std::move(to));
     if (mesh.find("normal") == nullptr) return;
     const auto normals = mesh.real<R>("normal");
     auto turned = Column::make<Point>("normal", normals->domain(), normals->rows(), normals->space());
-    transform::map_normals<R>(map, normals->template values<Point>(), turned->template values<Point>());
+    kernels::map_normals<R>(map, normals->template values<Point>(), turned->template values<Point>());
     *out = out->with(std::move(turned));
   });
   if (kernels::mirrors(map)) *out = mirrored_faces(std::move(*out));
@@ -205,7 +206,7 @@ Ref<Mesh> moved(const Mesh& mesh, const kernels::Affine& map, Context& ctx) {
 
 Ref<Surface> moved(const Surface& surface, const kernels::Affine& map, Context& ctx) {
   auto out = std::make_shared<Surface>(surface);
-  transform::map_points<double>(map, surface.points, out->points);
+  kernels::map_points<double>(map, surface.points, out->points);
   if (kernels::mirrors(map))
     for (auto& patch : out->patches) patch = transform::reversed(patch);
   out->space = Space::world;

@@ -1,5 +1,6 @@
 #include "nodes/transform/affine.h"
 
+#include "nodes/kernels/vector.h"
 #include "nodes/transform.h"
 #include "runtime/buffers/surface.h"
 #include "runtime/buffers/value.h"
