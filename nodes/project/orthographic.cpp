@@ -1,7 +1,7 @@
 #include "nodes/project/orthographic.h"
 
 #include "nodes/project.h"
-#include "runtime/buffers/mesh.h"
+#include "runtime/buffers/mesh_positions.h"
 #include "runtime/core/node_type.h"
 
 namespace frustum {
@@ -24,19 +24,7 @@ kernels::Projection volume_of(const Camera& c) {
 }
 
 Outputs run(const Inputs& in, const Params&, Context& ctx) {
-  const kernels::Projection volume = volume_of(*in.camera);
-  auto out = std::make_shared<Mesh>();
-  ctx.real([&]<class R>() {
-    using Eye = glm::vec<3, R>;
-    using Clip = glm::vec<4, R>;
-    const auto eye = in.mesh->real<R>("position");
-    auto clip = Column::make<Clip>("position", Domain::vertex, eye->rows(), Space::clip);
-    kernels::map_to_clip<R>(volume, eye->template values<Eye>(), clip->template values<Clip>());
-    *out = in.mesh->with(std::move(clip));
-  });
-  out->camera = in.camera;
-  ctx.count("vertices", out->vertices());
-  return {std::move(out)};
+  return {in_clip_space(*in.mesh, in.camera, volume_of(*in.camera), ctx)};
 }
 
 }  // namespace

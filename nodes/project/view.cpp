@@ -2,7 +2,7 @@
 
 #include "nodes/kernels/camera.h"
 #include "nodes/project.h"
-#include "runtime/buffers/mesh.h"
+#include "runtime/buffers/mesh_positions.h"
 #include "runtime/core/node_type.h"
 
 namespace frustum {
@@ -31,12 +31,14 @@ kernels::Affine eye_from_world(const Camera& camera, Context& ctx) {
 Outputs run(const Inputs& in, const Params&, Context& ctx) {
   const kernels::Affine view = eye_from_world(*in.camera, ctx);
   auto out = std::make_shared<Mesh>();
+  const Ref<Column> world = in.mesh->share("position");
   ctx.real([&]<class R>() {
-    const auto world = in.mesh->real<R>("position");
-    auto eye = Column::make<glm::vec<3, R>>("position", Domain::vertex, world->rows(), Space::eye);
-    project::world_to_eye<R>(view, world->template values<glm::vec<3, R>>(),
-                             eye->template values<glm::vec<3, R>>());
-    *out = in.mesh->with(world->renamed("world", Space::world)).with(std::move(eye));
+    using Point = glm::vec<3, R>;
+    *out = with_positions<Point, Point>(*in.mesh, Space::eye,
+                                        [&](std::span<const Point> from, std::span<Point> eye) {
+                                          project::world_to_eye<R>(view, from, eye);
+                                        });
+    *out = out->with(as_real<R>(world)->renamed("world", Space::world));
   });
   out->camera = in.camera;
   ctx.count("vertices", out->vertices());
