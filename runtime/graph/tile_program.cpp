@@ -100,6 +100,11 @@ std::vector<Rect> TileProgram::rectangles(std::span<const Rect> targets) const {
   for (std::size_t i = ops_.size(); i-- > 0;) {
     if (rects[i].empty()) continue;
     const TileOp& op = ops_[i];
+    // Linked, but prepare() of those who might have read it named none of its planes: it does not run.
+    if (std::none_of(op.planes_read.begin(), op.planes_read.end(), any)) {
+      rects[i] = {};
+      continue;
+    }
     for (std::size_t k = 0; k < op.inputs.size(); ++k) {
       if (!op.inputs[k].op) continue;
       const TileOp& from = ops_[*op.inputs[k].op];
