@@ -8,26 +8,35 @@ namespace frustum {
 namespace {
 
 template <std::size_t bytes>
-void gather_rows(const std::byte* from, std::byte* to, std::span<const std::uint32_t> rows) {
+void gather_bytes(const std::byte* from, std::byte* to, std::span<const std::uint32_t> rows) {
   kernels::parallel_blocks(rows.size(), kernels::usual_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       std::memcpy(to + i * bytes, from + std::size_t{rows[i]} * bytes, bytes);
   });
 }
 
-void gather_rows(const std::byte* from, std::byte* to, std::span<const std::uint32_t> rows,
-                 std::size_t bytes) {
+void gather_bytes(const std::byte* from, std::byte* to, std::span<const std::uint32_t> rows,
+                  std::size_t bytes) {
   switch (bytes) {
-    case 4: return gather_rows<4>(from, to, rows);
-    case 8: return gather_rows<8>(from, to, rows);
-    case 12: return gather_rows<12>(from, to, rows);
-    case 16: return gather_rows<16>(from, to, rows);
+    case 4: return gather_bytes<4>(from, to, rows);
+    case 8: return gather_bytes<8>(from, to, rows);
+    case 12: return gather_bytes<12>(from, to, rows);
+    case 16: return gather_bytes<16>(from, to, rows);
     default: break;
   }
   kernels::parallel_blocks(rows.size(), kernels::usual_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       std::memcpy(to + i * bytes, from + std::size_t{rows[i]} * bytes, bytes);
   });
+}
+
+// `run` rows at a time.
+Ref<Column> gather(const Column& column, std::span<const std::uint32_t> runs, std::size_t run) {
+  auto out = std::make_shared<Column>(column.name(), column.domain(), column.kind(), column.width(),
+                                      runs.size() * run, column.space());
+  gather_bytes(static_cast<const std::byte*>(column.data()), static_cast<std::byte*>(out->data()), runs,
+               run * static_cast<std::size_t>(column.width()) * bytes_of(column.kind()));
+  return out;
 }
 
 bool is_everything(std::span<const std::uint32_t> faces, std::size_t count) {
@@ -40,12 +49,11 @@ bool is_everything(std::span<const std::uint32_t> faces, std::size_t count) {
 }  // namespace
 
 Ref<Column> gather_faces(const Column& column, std::span<const std::uint32_t> faces) {
-  const std::size_t rows_per_face = column.domain() == Domain::corner ? 3 : 1;
-  auto out = std::make_shared<Column>(column.name(), column.domain(), column.kind(), column.width(),
-                                      faces.size() * rows_per_face, column.space());
-  gather_rows(static_cast<const std::byte*>(column.data()), static_cast<std::byte*>(out->data()), faces,
-              rows_per_face * static_cast<std::size_t>(column.width()) * bytes_of(column.kind()));
-  return out;
+  return gather(column, faces, column.domain() == Domain::corner ? 3 : 1);
+}
+
+Ref<Column> gather_rows(const Column& column, std::span<const std::uint32_t> rows) {
+  return gather(column, rows, 1);
 }
 
 Ref<Column> origin_of(const Mesh& mesh) {

@@ -17,6 +17,9 @@ Mesh select_faces(const Mesh& mesh, std::span<const std::uint32_t> faces);
 // at a time.
 Ref<Column> gather_faces(const Column& column, std::span<const std::uint32_t> faces);
 
+// The column whose row k is the old row rows[k]; any domain. Requires rows within the column. Parallel.
+Ref<Column> gather_rows(const Column& column, std::span<const std::uint32_t> rows);
+
 // Column `origin` of the mesh, or each face's own number where it has none.
 Ref<Column> origin_of(const Mesh& mesh);
 
