@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -78,6 +79,13 @@ class Fans {
       put(around[i], kernels::normalized_or(sums_[sets_.find(i)], faces_[around[i] / 3].unit));
   }
 
+  // The unit normal of all faces around v together; nothing where none has a direction, or they cancel.
+  std::optional<glm::dvec3> over_all(std::size_t v) const {
+    glm::dvec3 sum(0);
+    for (const std::uint32_t k : corners_.of(v)) sum += faces_[k / 3].unit * weight(k);
+    return kernels::normalized(sum);
+  }
+
   double weight(std::size_t corner) const {
     const FaceNormal& face = faces_[corner / 3];
     if (options_.weight == NormalWeight::uniform || face.area == 0) return 1;
@@ -137,16 +145,15 @@ std::size_t corner_normals(const kernels::Triangles<R>& mesh, std::span<const st
   kernels::parallel_blocks(corners.vertices(), 2048, [&](std::size_t begin, std::size_t end) {
     Fans<R> fans(mesh, corners, faces, options);
     for (std::size_t v = begin; v < end; ++v) {
-      glm::dvec3 all(0);
-      for (const std::uint32_t k : corners.of(v)) all += faces[k / 3].unit * fans.weight(k);
-      const auto whole = kernels::normalized(all);
+      std::optional<std::optional<glm::dvec3>> whole;  // found once, and only where it is asked for
       fans.at(v, [&](std::uint32_t k, const glm::dvec3& n) {
         if (n != glm::dvec3(0)) {
           to[k] = glm::vec<3, R>(n);
           return;
         }
-        to[k] = glm::vec<3, R>(whole.value_or(no_direction));
-        if (!whole) without.fetch_add(1, std::memory_order_relaxed);
+        if (!whole) whole = fans.over_all(v);
+        to[k] = glm::vec<3, R>(whole->value_or(no_direction));
+        if (!*whole) without.fetch_add(1, std::memory_order_relaxed);
       });
     }
   });
