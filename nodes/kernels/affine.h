@@ -90,35 +90,52 @@ inline Affine rotation_of(const glm::dmat3& orthonormal) {
   return a;
 }
 
+// The rotation of a quaternion of some length about 1, its terms to twice the precision: each entry is the
+// exact one for that quaternion, rounded, unless it is as small as 2^-50 by cancellation. |R^T R - I| <= 3 u.
+inline Affine rotation_of_quaternion(TwoTerms<double> a, TwoTerms<double> b, TwoTerms<double> c,
+                                     TwoTerms<double> d) {
+  const auto less = [](TwoTerms<double> p, TwoTerms<double> q) { return plus(p, {0 - q.hi, 0 - q.lo}); };
+  const auto aa = product(a, a), bb = product(b, b), cc = product(c, c), dd = product(d, d);
+  const auto ab = product(a, b), ac = product(a, c), ad = product(a, d);
+  const auto bc = product(b, c), bd = product(b, d), cd = product(c, d);
+  const auto n = plus(plus(aa, bb), plus(cc, dd));
+  const auto entry = [&](TwoTerms<double> p) { return quotient(p, n).hi; };
+  glm::dmat3 m;
+  m[0] = {entry(plus(less(aa, dd), less(bb, cc))), 2 * entry(plus(bc, ad)), 2 * entry(less(bd, ac))};
+  m[1] = {2 * entry(less(bc, ad)), entry(plus(less(aa, bb), less(cc, dd))), 2 * entry(plus(cd, ab))};
+  m[2] = {2 * entry(plus(bd, ac)), 2 * entry(less(cd, ab)), entry(plus(less(aa, bb), less(dd, cc)))};
+  for (glm::length_t i = 0; i < 3; ++i) m[i] += 0.0;  // no negative zeros
+  return rotation_of(m);
+}
+
 // The rotation of the quaternion w + x i + y j + z k, of any length but 0 (then nothing). Dividing by the
 // squared length instead of normalising keeps quarter turns such as (1, 1, 0, 0) exact.
 inline std::optional<Affine> quaternion_rotation(double w, const glm::dvec3& v) {
   const double largest = largest_component(glm::dvec4(v, w));
   if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
   const double scale = power_of_two_towards_one(largest);
-  const double a = w * scale, b = v.x * scale, c = v.y * scale, d = v.z * scale;
-  const double aa = a * a, bb = b * b, cc = c * c, dd = d * d;
-  const double n = (aa + bb) + (cc + dd);
-  glm::dmat3 m;
-  m[0] = {((aa - dd) + (bb - cc)) / n, 2 * (b * c + a * d) / n, 2 * (b * d - a * c) / n};
-  m[1] = {2 * (b * c - a * d) / n, ((aa - bb) + (cc - dd)) / n, 2 * (c * d + a * b) / n};
-  m[2] = {2 * (b * d + a * c) / n, 2 * (c * d - a * b) / n, ((aa - bb) + (dd - cc)) / n};
-  for (glm::length_t i = 0; i < 3; ++i) m[i] += 0.0;  // no negative zeros
-  return rotation_of(m);
+  return rotation_of_quaternion({w * scale, 0}, {v.x * scale, 0}, {v.y * scale, 0}, {v.z * scale, 0});
 }
 
-// Counter-clockwise seen against the axis, through the quaternion of half the angle, which divides its own
-// length out: |R^T R - I| stays below 8 u, where Rodrigues' formula with a rounded axis reaches 19 u.
-// Multiples of 90 degrees about a coordinate axis have entries 0, 1 and -1 exactly. Nothing where the axis
-// has no direction.
+// Counter-clockwise seen against the axis, through the quaternion (|axis| cos h, axis sin h) of half the
+// angle, whose length divides out: the axis is never rounded to unit length. |R^T R - I| <= 3 u and entries
+// within 4 ulp, where Rodrigues' formula with a rounded axis reaches 19 u. Multiples of 90 degrees about a
+// coordinate axis have entries 0, 1 and -1 exactly. Nothing where the axis has no direction.
 inline std::optional<Affine> rotation(const glm::dvec3& axis, double degrees) {
-  const auto unit = normalized(axis);
-  if (!unit || !std::isfinite(degrees)) return std::nullopt;
+  const double largest = largest_component(axis);
+  if (!(largest > 0) || !std::isfinite(largest) || !std::isfinite(degrees)) return std::nullopt;
+  const glm::dvec3 v = axis * power_of_two_towards_one(largest);
+  const auto square = plus(plus(two_product(v.x, v.x), two_product(v.y, v.y)), two_product(v.z, v.z));
+  const double root = std::sqrt(square.hi);
+  const auto rest = plus(square, two_product(-root, root));
+  const TwoTerms<double> length = fast_two_sum(root, rest.hi / (2 * root));
+
   const auto [s, c] = sin_cos_degrees(degrees);
-  if (c == 0) return quaternion_rotation(1, *unit * s);
-  if (s == 0) return c > 0 ? Affine{} : quaternion_rotation(0, *unit);
-  const auto half = sin_cos_degrees(degrees / 2);
-  return quaternion_rotation(half.cos, *unit * half.sin);
+  if (s == 0) return c > 0 ? Affine{} : rotation_of_quaternion({0, 0}, {v.x, 0}, {v.y, 0}, {v.z, 0});
+  if (c == 0) return rotation_of_quaternion(length, {v.x * s, 0}, {v.y * s, 0}, {v.z * s, 0});
+  const auto half = elementary::turned(elementary::reduce_degrees(degrees / 2));
+  const auto times_sine = [&](double x) { return product(half.sin, {x, 0}); };
+  return rotation_of_quaternion(product(length, half.cos), times_sine(v.x), times_sine(v.y), times_sine(v.z));
 }
 
 // The order in which the three turns are made, each about a fixed axis: xyz turns about x first.

@@ -51,6 +51,13 @@ constexpr TwoTerms<R> two_product(R a, R b) {
   return {p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
+// (a.hi + a.lo) + (b.hi + b.lo) with an error below 2^-104 (|a| + |b|) (double).
+template <std::floating_point R>
+constexpr TwoTerms<R> plus(TwoTerms<R> a, std::type_identity_t<TwoTerms<R>> b) {
+  const auto s = two_sum(a.hi, b.hi);
+  return fast_two_sum(s.hi, s.lo + (a.lo + b.lo));
+}
+
 // (a.hi + a.lo)(b.hi + b.lo) with a relative error below 2^-102 (double).
 template <std::floating_point R>
 constexpr TwoTerms<R> product(TwoTerms<R> a, std::type_identity_t<TwoTerms<R>> b) {

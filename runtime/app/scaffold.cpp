@@ -31,7 +31,7 @@ void @node@(std::span<const glm::vec<3, R>> in, const glm::vec<3, R>& direction,
 
 constexpr std::string_view geometry_source = R"(#include "nodes/@family@/@node@.h"
 
-@include@ "nodes/@family@.h"
+#include "nodes/@family@.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/core/node_type.h"
 
@@ -78,7 +78,7 @@ NodeType nodes::@family@_@node@() {
 
 constexpr std::string_view geometry_test = R"(#include "nodes/@family@/@node@.h"
 
-@include@ "nodes/@family@.h"
+#include "nodes/@family@.h"
 #include "runtime/buffers/mesh.h"
 @include@ "tests/support/run_node.h"
 
@@ -162,7 +162,7 @@ void @node@(std::span<const R> in, R gain, std::span<R> out) {
 
 constexpr std::string_view pixel_source = R"(#include "nodes/@family@/@node@.h"
 
-@include@ "nodes/@family@.h"
+#include "nodes/@family@.h"
 #include "runtime/buffers/image.h"
 #include "runtime/core/node_type.h"
 
@@ -227,7 +227,7 @@ NodeType nodes::@family@_@node@() {
 
 constexpr std::string_view pixel_test = R"(#include "nodes/@family@/@node@.h"
 
-@include@ "nodes/@family@.h"
+#include "nodes/@family@.h"
 #include "runtime/buffers/image.h"
 @include@ "tests/support/run_node.h"
 
