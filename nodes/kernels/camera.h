@@ -30,7 +30,7 @@ struct LookAt {
 };
 
 // Puts `eye` at the origin and `target` on the negative z axis, `up` in the upper half of the y-z plane.
-// Orthonormal to 10 u for every direction. Where target = eye (or either is not finite) the camera looks
+// Orthonormal to 4 u for every direction. Where target = eye (or either is not finite) the camera looks
 // along -z; where up is within 2^-40 rad of the view direction, up becomes -z, or y if the view is more along
 // z: looking straight down with y up, the top of the picture is north (-z).
 inline LookAt look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
@@ -46,7 +46,7 @@ inline LookAt look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm
   }
   const glm::dvec3 right = normalized_or(sideways, glm::dvec3(1, 0, 0));
   const glm::dvec3 above = cross(back, right);
-  Affine view = rotation_of(glm::transpose(glm::dmat3(right, above, back)));
+  Affine view = rotation_of(orthonormalized(glm::transpose(glm::dmat3(right, above, back))));
   view.translation = -(view.linear * eye);
   view.inverse_translation = eye;
   return {view, fault};
@@ -54,29 +54,32 @@ inline LookAt look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm
 
 // A symmetric view volume to clip space, by its five numbers:
 //   x_clip = x X, y_clip = y Y, z_clip = z Z + D, w_clip = -z (perspective) or 1 (orthographic)
-// In the form of OpenGL: errata E9, the notes' matrices have rank 3.
+// An orthographic box is moved first and scaled then, z_clip = (z + S) Z: where it is thin and far away, z Z
+// and D are large and cancel (hard case PRJ-07). S is the unevaluated sum of two numbers. In the form of OpenGL: errata E9, the notes' matrices have rank 3.
 struct Projection {
   glm::dvec2 scale;     // X, Y
   double depth_scale;   // Z
-  double depth_offset;  // D
+  double depth_offset;  // D = S Z
   bool perspective;
   bool reversed_z;
+  TwoTerms<double> depth_shift = {0, 0};  // S; 0 for a perspective
 };
 
 // Depth runs from -1 at near_z to 1 at far_z; reversed, from 1 to 0, which gives float depth its even
-// relative resolution. far_z may be infinite. Requires 0 < near_z < far_z, 0 < fov_y < pi, aspect = width /
+// relative resolution. Both ends are met within 2 u f / (f - n). far_z may be infinite. Requires 0 < near_z < far_z, 0 < fov_y < pi, aspect = width /
 // height > 0.
 inline Projection perspective(double fov_y, double aspect, double near_z, double far_z, bool reversed_z) {
   const double y = 1 / tan(fov_y / 2);
   Projection p{{y / aspect, y}, 0, 0, true, reversed_z};
   const bool infinite = far_z == std::numeric_limits<double>::infinity();
-  const double depth = far_z - near_z;
+  // Z rounded once, then D from the Z that is stored, rounded once: what Z lost cancels at the near plane.
+  const TwoTerms<double> depth = two_sum(far_z, -near_z);
   if (reversed_z) {
-    p.depth_scale = infinite ? 0 : near_z / depth;
-    p.depth_offset = infinite ? near_z : near_z * (far_z / depth);
+    p.depth_scale = infinite ? 0 : quotient<double>({near_z, 0.0}, depth).hi;
+    p.depth_offset = product(two_sum(p.depth_scale, 1.0), {near_z, 0}).hi;
   } else {
-    p.depth_scale = infinite ? -1 : -(far_z + near_z) / depth;
-    p.depth_offset = infinite ? -2 * near_z : -2 * near_z * (far_z / depth);
+    p.depth_scale = infinite ? -1 : -quotient(two_sum(far_z, near_z), depth).hi;
+    p.depth_offset = product(two_sum(p.depth_scale, -1.0), {near_z, 0}).hi;
   }
   return p;
 }
@@ -85,8 +88,9 @@ inline Projection perspective(double fov_y, double aspect, double near_z, double
 // far_z.
 inline Projection orthographic(double height, double aspect, double near_z, double far_z, bool reversed_z) {
   const double y = 2 / height, depth = far_z - near_z;
-  if (reversed_z) return {{y / aspect, y}, 1 / depth, far_z / depth, false, true};
-  return {{y / aspect, y}, -2 / depth, -(far_z + near_z) / depth, false, false};
+  const auto ends = two_sum(near_z, far_z);
+  if (reversed_z) return {{y / aspect, y}, 1 / depth, far_z / depth, false, true, {far_z, 0}};
+  return {{y / aspect, y}, -2 / depth, -ends.hi / depth, false, false, {ends.hi / 2, ends.lo / 2}};
 }
 
 inline glm::dmat4 matrix_of(const Projection& p) {
@@ -105,17 +109,21 @@ struct ClipMap {
       : x(static_cast<R>(p.scale.x)),
         y(static_cast<R>(p.scale.y)),
         z(static_cast<R>(p.depth_scale)),
-        offset(static_cast<R>(p.depth_offset)),
+        shift(static_cast<R>(p.depth_shift.hi)),
+        shift_low(static_cast<R>((p.depth_shift.hi - static_cast<double>(shift)) + p.depth_shift.lo)),
+        offset(static_cast<R>(p.perspective ? p.depth_offset : 0)),
         perspective(p.perspective) {}
   glm::vec<4, R> operator()(const glm::vec<3, R>& p_eye) const {
-    return {p_eye.x * x, p_eye.y * y, p_eye.z * z + offset, perspective ? -p_eye.z : R(1)};
+    return {p_eye.x * x, p_eye.y * y, ((p_eye.z + shift) + shift_low) * z + offset,
+            perspective ? -p_eye.z : R(1)};
   }
-  R x, y, z, offset;
+  R x, y, z, shift, shift_low, offset;
   bool perspective;
 };
 
-// p_clip[i] = P p_eye[i] in the precision of the buffers: x and y one rounding each, z two, w exact. Nothing
-// is divided. Requires equal sizes. Cost: 4 operations a point; memory speed.
+// p_clip[i] = P p_eye[i] in the precision of the buffers: x and y one rounding each, z two (of an orthographic
+// box three, relative to its depth), w exact. Nothing is divided. Requires equal sizes. Cost: 6 operations a
+// point; memory speed.
 template <std::floating_point R>
 void map_to_clip(const Projection& projection, std::span<const glm::vec<3, R>> p_eye,
                  std::span<glm::vec<4, R>> p_clip) {
@@ -128,7 +136,9 @@ void map_to_clip(const Projection& projection, std::span<const glm::vec<3, R>> p
 // Back from NDC to eye space, in closed form: the general inverse loses z / near digits. Infinite z where
 // depth is that of an infinite far plane.
 inline glm::dvec3 eye_from_ndc(const Projection& p, const glm::dvec3& ndc) {
-  if (!p.perspective) return {ndc.x / p.scale.x, ndc.y / p.scale.y, (ndc.z - p.depth_offset) / p.depth_scale};
+  if (!p.perspective)
+    return {ndc.x / p.scale.x, ndc.y / p.scale.y,
+            (ndc.z / p.depth_scale - p.depth_shift.hi) - p.depth_shift.lo};
   const double distance = p.depth_offset / (ndc.z + p.depth_scale);
   return {ndc.x * distance / p.scale.x, ndc.y * distance / p.scale.y, -distance};
 }
@@ -165,8 +175,9 @@ struct Viewport {
   R y_px(R y_ndc) const {
     return static_cast<R>((1 - static_cast<double>(y_ndc)) * half_height);
   }
+  // Subtracting first keeps the middle at 0 and pixel centres that mirror each other so, bit for bit.
   glm::dvec2 ndc_from_px(const glm::dvec2& px) const {
-    return {px.x / half_width - 1, 1 - px.y / half_height};
+    return {(px.x - half_width) / half_width, (half_height - px.y) / half_height};
   }
 };
 
