@@ -74,5 +74,17 @@ TEST(DeterminantSign, SurvivesExtremeScalesAndRefusesNonsense) {
   EXPECT_EQ(kernels::determinant_sign(glm::vec3(1, 2, 3), glm::vec3(4, 5, 6), glm::vec3(7, 8, 10)), -1);
 }
 
+// FND-08 holds it to rationals; here, what the sign means, and points that differ in their last bits.
+TEST(Orientation, TellsTheSidesOfAPlane) {
+  const glm::dvec3 p(0, 0, 0), q(1, 0, 0), r(0, 1, 0);  // counter-clockwise seen from +z
+  EXPECT_EQ(kernels::orientation(p, q, r, glm::dvec3(5, 5, 1)), -1);
+  EXPECT_EQ(kernels::orientation(p, q, r, glm::dvec3(5, 5, -1)), 1);
+  EXPECT_EQ(kernels::orientation(p, q, r, glm::dvec3(5, 5, 0)), 0);
+  const glm::dvec3 far(1e7, 1e7, 1e7), up(0, 0, 0x1p-29);  // the last bit of 1e7
+  EXPECT_EQ(kernels::orientation(p + far, q + far, r + far, far + glm::dvec3(1, 1, 0) + up), -1);
+  EXPECT_EQ(kernels::orientation(p + far, q + far, r + far, far + glm::dvec3(1, 1, 0)), 0);
+  EXPECT_EQ(kernels::orientation(p, q, r, glm::dvec3(0, 0, std::numeric_limits<double>::quiet_NaN())), 0);
+}
+
 }  // namespace
 }  // namespace frustum
