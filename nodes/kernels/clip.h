@@ -80,15 +80,21 @@ struct ClipRing {
 };
 
 // Where the edge from `in` (distance >= 0) to `out` (distance < 0) meets planes[k], snapped to be inside it
-// and all planes before it. A function of the two ends alone: no matter whose edge it is. Computed in double
-// from finite numbers: for float nothing overflows; t is in [0, 1].
+// and all planes before it. A function of the two ends alone: no matter whose edge it is. Measured from the
+// nearer end, so that its digits are kept: where the other is far larger, as when an edge comes from the eye's
+// own plane, the crossing is that end but for some 1e-30 (hard cases PRJ-01, CLP-03). Computed in double from
+// finite numbers: for float nothing overflows.
 template <std::floating_point R>
 ClipVertex<R> clip_crossing(const std::array<ClipPlane, 6>& planes, std::size_t k, const ClipVertex<R>& in,
                             const ClipVertex<R>& out) {
   const glm::dvec4 a(in.p), b(out.p);
   const double d_in = clip_distance(planes[k], a), d_out = clip_distance(planes[k], b);
-  const double t = d_in / (d_in - d_out);
-  ClipVertex<R> v{glm::vec<4, R>(a + (b - a) * t), in.weights + (out.weights - in.weights) * t, -1};
+  const bool near_in = d_in <= -d_out;
+  const double t = (near_in ? d_in : -d_out) / (d_in - d_out);  // in [0, 1/2]
+  const auto between = [&](const auto& p, const auto& q) {
+    return near_in ? p + (q - p) * t : q + (p - q) * t;
+  };
+  ClipVertex<R> v{glm::vec<4, R>(between(a, b)), between(in.weights, out.weights), -1};
   for (std::size_t i = 0; i <= k; ++i) {
     const auto& plane = planes[i];
     if (i != k && clip_distance(plane, v.p) >= 0) continue;
