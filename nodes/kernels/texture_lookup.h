@@ -81,7 +81,7 @@ R fold(R u, EdgeRule rule) {
   return t >= R(0) ? t : R(0);
 }
 
-/// The two texels around a coordinate in [0, 1], and how far it is from the first to the second, in [0, 1).
+/// The two texels around a coordinate in [0, 1], and how far it is from the first to the second, in [0, 1].
 template <std::floating_point R>
 struct TexelPair {
   int first, second;
@@ -136,11 +136,19 @@ R pyramid_level(R du_dx, R dv_dx, R du_dy, R dv_dy, const TexelLevel& base, int 
 template <std::floating_point R>
 using Rgba = std::array<R, 4>;
 
-/// a + f (b - a): exactly a where f is 0 or b equals a.
+/// a + f (b - a), held between the two: exactly a where f is 0 or b equals a, exactly b where f is 1. Plainly,
+/// 1e8 and 1 give 0 at f = 1 (hard case TEX-06). NaN where either is NaN.
 template <std::floating_point R>
 Rgba<R> between(const Rgba<R>& a, const Rgba<R>& b, R f) {
   Rgba<R> c;
-  for (std::size_t k = 0; k < 4; ++k) c[k] = a[k] + f * (b[k] - a[k]);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const bool rises = a[k] < b[k];
+    const R least = rises ? a[k] : b[k], greatest = rises ? b[k] : a[k];
+    R v = a[k] + f * (b[k] - a[k]);
+    v = v < least ? least : v;
+    v = greatest < v ? greatest : v;
+    c[k] = f < R(1) ? v : b[k];
+  }
   return c;
 }
 

@@ -203,7 +203,14 @@ HWY_INLINE void find_taps(const TexelPyramid& p, V s, V t, V width, V height, Ta
 using D4 = hn::FixedTag<float, 4>;
 using V4 = hn::Vec<D4>;
 
-HWY_INLINE V4 blend(V4 a, V4 b, V4 f) { return hn::Add(a, hn::Mul(f, hn::Sub(b, a))); }
+HWY_INLINE V4 blend(V4 a, V4 b, V4 f) {
+  const auto rises = hn::Lt(a, b);
+  const V4 least = hn::IfThenElse(rises, a, b), greatest = hn::IfThenElse(rises, b, a);
+  V4 v = hn::Add(a, hn::Mul(f, hn::Sub(b, a)));
+  v = hn::IfThenElse(hn::Lt(v, least), least, v);
+  v = hn::IfThenElse(hn::Lt(greatest, v), greatest, v);
+  return hn::IfThenElse(hn::Lt(f, hn::Set(D4(), 1.0F)), v, b);
+}
 
 HWY_INLINE V4 fetch(const float* rgba, const Taps& taps, std::size_t lane) {
   const D4 d4;
