@@ -60,6 +60,10 @@ struct LightSetup {
   Exponent<R> exponent{};
 };
 
+/// A point light is at most this strong: at a distance of 1e-20 its 1 / d^2 is infinite in float, and times a
+/// colour of 0 it would be NaN (hard case SHD-06).
+inline constexpr double greatest_strength = 0x1p96;
+
 inline constexpr std::uint32_t nothing_there = 0xFFFFFFFFu;
 
 /// Which elements of a row count: those whose tag is `wanted`, or every one that is not `nothing_there`.
@@ -143,6 +147,7 @@ Received<R> receive(const LightSetup<R>& s, const Triple<R>& normal, const Tripl
       l = unit3(d);
       strength =
           R(1) / (light.attenuation[0] + light.attenuation[1] * distance + light.attenuation[2] * square);
+      strength = strength < R(greatest_strength) ? strength : R(greatest_strength);
     }
     const R n_l = dot3(n, l);
     if (!(n_l > R(0))) continue;

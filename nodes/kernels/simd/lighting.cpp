@@ -109,6 +109,8 @@ HWY_INLINE void receive_vector(const LightSetup<float>& s, const PointRows<float
       const V square = dot(to, to), distance = hn::Sqrt(square);
       l = unit(to);
       strength = hn::Div(one, hn::Add(hn::Add(a[0], hn::Mul(a[1], distance)), hn::Mul(a[2], square)));
+      const V most = hn::Set(d, static_cast<float>(greatest_strength));
+      strength = hn::IfThenElse(hn::Lt(strength, most), strength, most);
     }
     const V n_l = dot(n, l);
     const M lit = hn::Gt(n_l, zero);
