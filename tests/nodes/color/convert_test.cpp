@@ -179,5 +179,13 @@ TEST(Convert, DividingByAlphaAndBackKeepsValues) {
   EXPECT_THAT(v, testing::ElementsAre(0.5, 0.7, testing::DoubleEq(0.2), 0.4, 0.6));
 }
 
+// ZBF-09: a colour over an alpha of 1e-45 is infinite in float.
+TEST(Convert, CoverageBelowTheLeastIsNone) {
+  const float alpha[] = {1e-45F, 0x1p-65F, 0x1p-64F};
+  float v[] = {1, 2, 3};
+  divide_by_alpha(alpha, v, 3);
+  EXPECT_THAT(v, testing::ElementsAre(1, 2, 3 * 0x1p64F));
+}
+
 }  // namespace
 }  // namespace frustum
