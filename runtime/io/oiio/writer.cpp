@@ -33,10 +33,12 @@ lib::TypeDesc type_desc(Type t) {
 
 std::size_t bytes_of(Type t) { return t == Type::u8 ? 1 : t == Type::u16 || t == Type::half ? 2 : 4; }
 
-// round(v most), v cut to [0, 1]; NaN, for which every comparison is false, is 0.
+// round(v most), v cut to [0, 1], halves to the even integer; NaN, for which every comparison is false, is 0.
+// Exact: the product has at most 40 digits, and adding 1.5 * 2^52 rounds it to an integer (hard case COL-10).
 template <class T>
-T quantized(float v, float most) {
-  return v > 0 ? static_cast<T>(v < 1 ? v * most + 0.5f : most) : T{0};
+T quantized(float v, double most) {
+  constexpr double shifter = 0x1.8p52;
+  return v > 0 ? static_cast<T>(v < 1 ? (static_cast<double>(v) * most + shifter) - shifter : most) : T{0};
 }
 
 Imath::half to_half(float v) {
