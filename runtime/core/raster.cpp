@@ -37,10 +37,15 @@ class Pages {
 };
 
 std::size_t storage_bytes(const Frame& f) {
-  const auto row = static_cast<std::size_t>(padded_row(f.window.width()));
-  std::size_t sum = 0;
-  for (const Plane& p : f.planes)
-    sum += row * static_cast<std::size_t>(f.window.height()) * static_cast<std::size_t>(f.samples()) * bytes_of(p.kind);
+  // 2^31 x 2^31 pixels of 16 samples do not fit 64 bits: what wraps around would be a small raster.
+  std::size_t values = static_cast<std::size_t>(padded_row(f.window.width())), sum = 0;
+  bool fits = !__builtin_mul_overflow(values, static_cast<std::size_t>(f.window.height()), &values) &&
+              !__builtin_mul_overflow(values, static_cast<std::size_t>(f.samples()), &values);
+  for (const Plane& p : f.planes) {
+    std::size_t bytes = 0;
+    fits = fits && !__builtin_mul_overflow(values, bytes_of(p.kind), &bytes) && !__builtin_add_overflow(sum, bytes, &sum);
+  }
+  if (!fits) throw WorldError("out_of_memory", "a raster of more than 2^64 bytes");
   return sum;
 }
 
