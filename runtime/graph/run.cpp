@@ -1,5 +1,6 @@
 #include "runtime/graph/run.h"
 
+#include "runtime/core/float_environment.h"
 #include "runtime/graph/keys.h"
 #include "runtime/graph/run_state.h"
 
@@ -187,6 +188,7 @@ class Runner {
     for (std::size_t i = 0; i < inputs.size(); ++i)
       for (const Source& s : node.inputs[i]) inputs[i].push_back(value(s));
     Context ctx = context(n);
+    const FloatEnvironment environment;
     std::vector<Buffer> outputs = node.type->run(inputs, node.params.get(), ctx);
     std::uint64_t bytes = 0;
     for (std::size_t p = 0; p < outputs.size(); ++p) {
@@ -231,6 +233,7 @@ class Runner {
       if (node.type->inputs[i].tiled && !inputs[i].buffers.empty()) inputs[i] = streaming(node.inputs[i].front());
     }
     auto ready = std::make_shared<ReadyNode>();
+    const FloatEnvironment environment;
     ready->node = node.type->prepare(inputs, node.params.get(), ctx);
     for (const PreparedInput& in : inputs)
       ready->planes_read.push_back(in.tiled.planes_read ? *in.tiled.planes_read : std::vector<bool>());

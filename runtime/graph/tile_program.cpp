@@ -1,5 +1,7 @@
 #include "runtime/graph/tile_program.h"
 
+#include "runtime/core/float_environment.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <new>
@@ -174,7 +176,10 @@ void TileProgram::run(std::span<const Tile> targets, TileWorker& worker, const A
 
     const auto start = Clock::now();
     worker.arena.reset();
-    op.type->tile(op.prepared->state.get(), in, out, worker.arena);
+    {
+      const FloatEnvironment environment;
+      op.type->tile(op.prepared->state.get(), in, out, worker.arena);
+    }
     worker.costs.time[i] += Clock::now() - start;
     worker.costs.pixels[i] += static_cast<std::uint64_t>(rect.area());
     if (after) after(i, in, out);
