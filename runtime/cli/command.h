@@ -34,6 +34,7 @@ void add_diff(CLI::App&, Invocation&);
 void add_test(CLI::App&, Invocation&);
 void add_new(CLI::App&, Invocation&);
 void add_catalog(CLI::App&, Invocation&);
+void add_stability(CLI::App&, Invocation&);
 
 // A command with --json and an example under its help; `body` runs when the command was chosen. Options
 // live as long as the callbacks that hold them.

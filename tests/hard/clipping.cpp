@@ -1,0 +1,522 @@
+// Clipping and culling.
+#include "nodes/cull/backface.h"
+#include "nodes/cull/frustum.h"
+#include "nodes/kernels/clip.h"
+#include "tests/hard/exact.h"
+#include "tests/hard/screen.h"
+#include "tests/hard/stages.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+#include <set>
+#include <vector>
+
+namespace frustum::hard {
+namespace {
+
+using glm::vec3, glm::vec4;
+using Ring = std::vector<vec4>;
+constexpr float largest = std::numeric_limits<float>::max();
+const auto volume = kernels::view_volume(false);
+constexpr std::size_t right_side = 3;  // planes[3] of the volume: x <= w
+
+bool same_bits(const vec4& a, const vec4& b) {
+  return std::bit_cast<std::array<std::uint32_t, 4>>(a) == std::bit_cast<std::array<std::uint32_t, 4>>(b);
+}
+
+float side(const vec4& p) { return p.w - p.x; }  // of x <= w
+
+// Sutherland and Hodgman as the textbook has it: the crossing is measured from the first end of the edge.
+vec4 textbook_crossing(const vec4& a, const vec4& b) {
+  const float da = side(a), db = side(b), t = da / (da - db);
+  return a + (b - a) * t;
+}
+
+Ring textbook_clip(const Ring& ring) {
+  Ring out;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const vec4 &a = ring[i], &b = ring[(i + 1) % ring.size()];
+    const bool a_in = side(a) >= 0, b_in = side(b) >= 0;
+    if (a_in) out.push_back(a);
+    if (a_in != b_in) out.push_back(textbook_crossing(a, b));
+  }
+  return out;
+}
+
+kernels::ClipRing<float> ring_of(const Ring& points) {
+  kernels::ClipRing<float> ring;
+  for (const vec4& p : points) ring.push({p, {1, 0, 0}, 0});
+  return ring;
+}
+
+Ring clipped(const Ring& points) {
+  const auto ring = kernels::clip_halfspace(ring_of(points), volume, right_side);
+  Ring out;
+  for (std::size_t i = 0; i < ring.size; ++i) out.push_back(ring.vertex[i].p);
+  return out;
+}
+
+vec4 point(Trial& t, double size = 2) {
+  vec4 p;
+  for (int i = 0; i < 4; ++i) p[i] = static_cast<float>(t.random.uniform(-size, size));
+  return p;
+}
+
+struct Edge {
+  vec4 in, out;
+};
+Edge crossing_edge(Trial& t) {
+  for (;;) {
+    const vec4 a = point(t), b = point(t);
+    if (side(a) > 0 && side(b) < 0) return {a, b};
+  }
+}
+
+vec4 robust_crossing(const Edge& e) {
+  return kernels::clip_crossing<float>(volume, right_side, {e.in, {1, 0, 0}, 0}, {e.out, {0, 1, 0}, 1}).p;
+}
+
+void price_of_crossings(Trial& t) {
+  std::vector<Ring> inputs(500);
+  for (auto& ring : inputs) {
+    const Edge e = crossing_edge(t);
+    ring = {e.in, e.out, point(t)};
+  }
+  t.price_over(inputs, textbook_clip, clipped);
+}
+
+void shared_edge(Trial& t) {
+  for (std::size_t n = t.samples(100000, 1000000); n-- > 0;) {
+    const Edge e = crossing_edge(t);
+    // The neighbours on either side walk the edge in opposite directions; their third corners are inside.
+    const vec4 third(-1, 0, 0, 1);
+    const Ring one = clipped({e.in, e.out, third}), other = clipped({e.out, e.in, third});
+    t.tally(!same_bits(textbook_crossing(e.in, e.out), textbook_crossing(e.out, e.in)),
+            one.size() != 4 || other.size() != 4 || !same_bits(one[1], other[0]),
+            {e.in.x, e.in.y, e.in.z, e.in.w, e.out.x, e.out.y, e.out.z, e.out.w});
+  }
+  price_of_crossings(t);
+}
+
+// What is left of a triangle inside x <= w in exact arithmetic: distinct corners (x, y), w = 1 everywhere.
+struct Left {
+  std::size_t corners;
+  Rational area;
+};
+using Point2 = std::array<Rational, 2>;
+
+Left measured(const std::vector<Point2>& ring) {
+  std::vector<Point2> distinct;
+  for (const auto& p : ring)
+    if (std::find(distinct.begin(), distinct.end(), p) == distinct.end()) distinct.push_back(p);
+  Rational area = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const auto &p = ring[i], &q = ring[(i + 1) % ring.size()];
+    area += p[0] * q[1] - p[1] * q[0];
+  }
+  return {distinct.size() < 3 ? 0 : distinct.size(), ::abs(area)};
+}
+
+Left exact_left(const Ring& points) {
+  std::vector<Point2> out;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const vec4 &a = points[i], &b = points[(i + 1) % points.size()];
+    const Rational da = 1 - Rational(a.x), db = 1 - Rational(b.x);
+    if (da >= 0) out.push_back({a.x, a.y});
+    if ((da > 0 && db < 0) || (da < 0 && db > 0)) {
+      const Rational s = da / (da - db);
+      out.push_back({Rational(a.x) + s * (Rational(b.x) - Rational(a.x)),
+                     Rational(a.y) + s * (Rational(b.y) - Rational(a.y))});
+    }
+  }
+  return measured(out);
+}
+
+void corners_on_the_plane(Trial& t) {
+  // x at equal distances from 1, so that every crossing is exact; y spreads the corners.
+  const auto judge = [&](float ax, float bx, float cx) {
+    const Ring ring{{ax, 0, 0, 1}, {bx, 4, 0, 1}, {cx, 0.5F, -0.0F, 1}};
+    const Left want = exact_left(ring);
+    const auto wrong = [&](const Ring& got) {
+      std::vector<Point2> points;
+      for (const vec4& p : got) points.push_back({p.x, p.y});
+      return got.size() != want.corners || (want.corners > 0 && measured(points).area != want.area);
+    };
+    t.tally(wrong(textbook_clip(ring)), wrong(clipped(ring)), {ax, bx, cx});
+  };
+  const auto all_of = [&](std::array<float, 3> x) {
+    for (const float p : x)
+      for (const float q : x)
+        for (const float r : x)
+          if (p != q || q != r) judge(p, q, r);
+  };
+  all_of({0, 1, 2}), all_of({0.5F, 1, 1.5F}), all_of({-1, 1, 3});
+  price_of_crossings(t);
+}
+
+void edge_along_the_plane(Trial& t) {
+  const auto judge = [&](const Edge& e) {
+    const Rational d_in = Rational(e.in.w) - Rational(e.in.x), d_out = Rational(e.out.w) - Rational(e.out.x);
+    if (!(d_in > 0 && d_out < 0)) return;
+    const vec4 got = robust_crossing(e), textbook = textbook_crossing(e.in, e.out);
+    const Rational s = d_in / (d_in - d_out);
+    double naive_error = 0, error = 0;
+    const float scale = std::max(kernels::largest_component(e.in), kernels::largest_component(e.out));
+    for (int i = 0; i < 4; ++i) {
+      const Rational want = Rational(e.in[i]) + s * (Rational(e.out[i]) - Rational(e.in[i]));
+      const Rational unit = Rational(scale) * Rational(u32);
+      naive_error = std::max(naive_error, distance(textbook[i], want, unit));
+      error = std::max(error, distance(got[i], want, unit));
+      const auto [low, high] = std::minmax(e.in[i], e.out[i]);
+      t.require(got[i] >= low && got[i] <= high, "the crossing lies in the edge's box",
+                {e.in.x, e.in.w, e.out.x, e.out.w});
+    }
+    t.measure(naive_error, error, {e.in.x, e.in.y, e.in.z, e.in.w, e.out.x, e.out.y, e.out.z, e.out.w});
+  };
+  constexpr float tiny = std::numeric_limits<float>::denorm_min();
+  judge({{0, 1, 0, tiny}, {tiny, -1, 0, 0}});
+  judge({{-1e-30F, 1, 0, 1}, {1e-30F, 0, 0, 0}});
+  judge({{1, 1, 0, std::nextafter(1.0F, 2.0F)}, {1, -1, 0.5F, std::nextafter(1.0F, 0.0F)}});
+  judge({{0, largest, 0, largest}, {largest, -largest, 0, -largest}});
+  judge({{-largest, 1, 0, largest}, {largest, 1, 0, -largest}});
+  for (std::size_t n = t.samples(5000, 500000); n-- > 0;) {
+    const Edge e = crossing_edge(t);
+    const float size = std::ldexp(1.0F, static_cast<int>(t.random.below(250)) - 124);
+    const float w = size * static_cast<float>(t.random.uniform(0.5, 1)), ulp = std::nextafter(w, largest) - w;
+    const auto steps = [&] { return ulp * static_cast<float>(1 + t.random.below(8)); };
+    judge(
+        {{w, e.in.y * size, e.in.z * w / 3, w + steps()}, {w + steps(), e.out.y * size, e.out.z * w / 3, w}});
+  }
+  price_of_crossings(t);
+}
+
+void straddling_the_eye(Trial& t) {
+  std::vector<ClipTriangle> inputs{{vec4(0.5F, 0.5F, 0, 1), vec4(-0.5F, 0.5F, 0, 1), vec4(1, -1, 0, -1)}};
+  for (std::size_t n = t.samples(12, 1000); n-- > 0;) {
+    // All three corners look as if they were in view: |x / w| <= 1, |y / w| <= 1.
+    ClipTriangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto w = static_cast<float>((k == 2 ? -1 : 1) * t.random.uniform(0.5, 2));
+      const auto in_view = [&] { return w * static_cast<float>(t.random.uniform(-0.9, 0.9)); };
+      triangle[k] = {in_view(), in_view(), 0.5F * in_view(), w};
+    }
+    inputs.push_back(triangle);
+  }
+  for (const auto& triangle : inputs) {
+    const auto want = seen(triangle, 64, 64);
+    t.measure(static_cast<double>(wrong_pixels(drawn_without_clipping({&triangle, 1}, 64, 64), want)),
+              static_cast<double>(wrong_pixels(drawn({&triangle, 1}, 64, 64), want)),
+              {triangle[2].x, triangle[2].y, triangle[2].z, triangle[2].w});
+  }
+  t.price(
+      [&] {
+        for (const auto& x : inputs) keep(drawn_without_clipping({&x, 1}, 64, 64).id[0]);
+      },
+      [&] {
+        for (const auto& x : inputs) keep(drawn({&x, 1}, 64, 64).id[0]);
+      });
+}
+
+void clipping_twice(Trial& t) {
+  for (std::size_t n = t.samples(100000, 1000000); n-- > 0;) {
+    const Edge e = crossing_edge(t);
+    const Ring once = clipped({e.in, e.out, vec4(-1, 0, 0, 1)}), twice = clipped(once);
+    bool same = once.size() == twice.size();
+    for (std::size_t i = 0; same && i < once.size(); ++i)
+      same = same_bits(once[i], twice[i]) && side(once[i]) >= 0;
+    t.tally(side(textbook_crossing(e.in, e.out)) < 0, !same,
+            {e.in.x, e.in.y, e.in.z, e.in.w, e.out.x, e.out.y, e.out.z, e.out.w});
+  }
+  price_of_crossings(t);
+}
+
+// The textbook's clip against all sides of the volume, in the order of `planes`.
+Ring textbook_clip(Ring ring, const std::array<kernels::ClipPlane, 6>& planes) {
+  for (const auto& plane : planes) {
+    const auto inside = [&](const vec4& p) {
+      return static_cast<float>(plane.sign) * p[plane.axis] + static_cast<float>(plane.bound) * p.w;
+    };
+    Ring out;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const vec4 &a = ring[i], &b = ring[(i + 1) % ring.size()];
+      const float da = inside(a), db = inside(b);
+      if (da >= 0) out.push_back(a);
+      if ((da >= 0) != (db >= 0)) out.push_back(a + (b - a) * (da / (da - db)));
+    }
+    ring = out;
+  }
+  return ring;
+}
+
+// Corners on a screen of 1024 px, in 1/256 px.
+using Snapped = std::set<std::array<std::int32_t, 2>>;
+Snapped snapped(const Ring& ring) {
+  Snapped corners;
+  for (const vec4& p : ring) {
+    const auto px = [&](float x) { return kernels::snap(static_cast<double>(x / p.w) * 512, 8); };
+    if (p.w > 0) corners.insert({px(p.x), px(p.y)});
+  }
+  return corners;
+}
+
+Ring clipped_by(const ClipTriangle& t, const std::array<kernels::ClipPlane, 6>& planes) {
+  const auto ring = kernels::clip_triangle<float>(planes, 0x3f, t[0], t[1], t[2]);
+  Ring out;
+  for (std::size_t i = 0; i < ring.size; ++i) out.push_back(ring.vertex[i].p);
+  return out;
+}
+
+void order_of_planes(Trial& t) {
+  for (std::size_t n = t.samples(30, 2000); n-- > 0;) {
+    ClipTriangle triangle;
+    for (auto& p : triangle) {
+      p = point(t, 3);
+      p.w = static_cast<float>(std::exp2(t.random.uniform(-10, 10)));
+      for (int i = 0; i < 3; ++i) p[i] *= p.w;
+    }
+    const Ring corners(triangle.begin(), triangle.end());
+    const Snapped naive_first = snapped(textbook_clip(corners, volume)),
+                  first = snapped(clipped_by(triangle, volume));
+    bool naive_differs = false, differs = false;
+    std::array<std::size_t, 6> order{0, 1, 2, 3, 4, 5};
+    while (std::next_permutation(order.begin(), order.end())) {
+      std::array<kernels::ClipPlane, 6> planes = volume;
+      for (std::size_t i = 0; i < 6; ++i) planes[i] = volume[order[i]];
+      naive_differs = naive_differs || snapped(textbook_clip(corners, planes)) != naive_first;
+      differs = differs || snapped(clipped_by(triangle, planes)) != first;
+    }
+    t.tally(naive_differs, differs, {triangle[0].x, triangle[0].y, triangle[0].z, triangle[0].w});
+  }
+}
+
+void at_infinity(Trial& t) {
+  std::vector<ClipTriangle> inputs;
+  for (std::size_t n = t.samples(12, 1000); n-- > 0;) {
+    ClipTriangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle[k] = point(t);
+      triangle[k].z *= 0.2F;
+      triangle[k].w = k == 0 ? 0 : 1 + std::fabs(triangle[k].w);
+    }
+    inputs.push_back(triangle);
+  }
+  inputs.push_back({vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(-1, -1, 1, 0)});
+  for (const auto& triangle : inputs) {
+    const auto want = seen(triangle, 64, 64);
+    t.measure(static_cast<double>(wrong_pixels(drawn_without_clipping({&triangle, 1}, 64, 64), want)),
+              static_cast<double>(wrong_pixels(drawn({&triangle, 1}, 64, 64), want)),
+              {triangle[0].x, triangle[0].y, triangle[0].z});
+    ClipTriangle limit = triangle;
+    for (auto& p : limit) p.w = p.w == 0 ? 1e-30F : p.w;
+    t.require(wrong_pixels(drawn({&limit, 1}, 64, 64), want) == 0, "as in the limit w = 1e-30",
+              {triangle[0].x});
+  }
+  t.price(
+      [&] {
+        for (const auto& x : inputs) keep(drawn_without_clipping({&x, 1}, 64, 64).id[0]);
+      },
+      [&] {
+        for (const auto& x : inputs) keep(drawn({&x, 1}, 64, 64).id[0]);
+      });
+}
+
+void conservative_culling(Trial& t) {
+  std::vector<vec4> positions;
+  std::vector<glm::uvec3> faces;
+  const auto all_outside = [&](std::size_t f, auto&& outside) {
+    const auto& v = faces[f];
+    for (int axis = 0; axis < 3; ++axis)
+      for (const float sign : {1.0F, -1.0F})
+        if (outside(positions[v.x], axis, sign) && outside(positions[v.y], axis, sign) &&
+            outside(positions[v.z], axis, sign))
+          return true;
+    return false;
+  };
+  // The textbook culls what has left the cube after the divide.
+  const auto after_the_divide = [](const vec4& p, int axis, float sign) {
+    return sign * (p[axis] * (1 / p.w)) > 1;
+  };
+  const auto before_it = [](const vec4& p, int axis, float sign) { return sign * p[axis] > p.w; };  // exact
+  for (std::size_t n = t.samples(100000, 10000000); n-- > 0;) {
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    for (int k = 0; k < 3; ++k) {
+      // Within an ulp of a side, to either side of it; in every tenth face some corner is behind the eye.
+      const float size =
+          std::ldexp(static_cast<float>(t.random.uniform(0.5, 1)), static_cast<int>(t.random.below(40)) - 20);
+      const std::size_t where = t.random.below(3);
+      vec4 p(size, 0.5F * size, 0.25F * size,
+             where == 0 ? size : std::nextafter(size, where == 1 ? 0 : largest));
+      if (t.random.below(30) == 0) p *= -1.0F;
+      positions.push_back(p);
+    }
+    faces.push_back({first, first + 1, first + 2});
+  }
+  const auto kept = cull::faces_not_outside<float>(false, positions, faces);
+  std::size_t next = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const bool keeps = next < kept.size() && kept[next] == f, gone = all_outside(f, before_it);
+    next += keeps ? 1 : 0;
+    const vec4& p = positions[3 * f];
+    t.tally(!gone && all_outside(f, after_the_divide), !gone && !keeps, {p.x, p.y, p.z, p.w});
+    t.require(!gone || !keeps, "nothing outside is kept", {p.x, p.w});
+  }
+  positions.resize(30000), faces.resize(10000);
+  t.price(
+      [&] {
+        std::vector<std::uint32_t> out;
+        for (std::uint32_t f = 0; f < faces.size(); ++f)
+          if (!all_outside(f, after_the_divide)) out.push_back(f);
+        keep(out.size());
+      },
+      [&] { keep(cull::faces_not_outside<float>(false, positions, faces).size()); });
+}
+
+void edge_on_faces(Trial& t) {
+  std::vector<vec3> positions;
+  std::vector<glm::uvec3> faces;
+  std::vector<int> want;
+  const auto textbook = [](const vec3& a, const vec3& b, const vec3& c) {
+    const vec3 n = glm::cross(b - a, c - a);
+    const float d = -(n.x * a.x + n.y * a.y + n.z * a.z);
+    return (d > 0) - (d < 0);
+  };
+  for (std::size_t i = t.samples(20000, 1000000); i-- > 0;) {
+    // The eye is the origin; a plane through it, corners at 1e7, each moved by an ulp or not at all.
+    const auto number = [&](double size) { return static_cast<float>(t.random.uniform(-size, size)); };
+    const vec3 u(number(1e7), number(1e7), number(1e7)), v(number(1e7), number(1e7), number(1e7));
+    std::array<vec3, 3> p{u, v, u * 0.5F + v * 0.25F};
+    const auto k = t.random.below(3);
+    const auto axis = static_cast<int>(t.random.below(3));
+    if (t.random.below(2) == 0) p[k][axis] = std::nextafter(p[k][axis], largest);
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    positions.insert(positions.end(), p.begin(), p.end());
+    faces.push_back({first, first + 1, first + 2});
+    std::array<std::array<Rational, 3>, 3> m;
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = 0; c < 3; ++c) m[r][c] = Rational(p[r][static_cast<int>(c)]);
+    const Rational det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) +
+                         m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
+                         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    want.push_back(-sgn(det));  // front is where the corners turn counter-clockwise seen from the eye
+  }
+  std::vector<int> got(faces.size(), 0);
+  const auto showing = [&](int wanted) {
+    return cull::faces_showing<cull::Rows::eye_perspective, vec3>(wanted, positions, faces);
+  };
+  for (const int wanted : {1, -1})
+    for (const auto f : showing(wanted)) got[f] = wanted;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto& a = faces[f];
+    const vec3& p = positions[a.x];
+    t.tally(textbook(p, positions[a.y], positions[a.z]) != want[f], got[f] != want[f], {p.x, p.y, p.z});
+  }
+  for (auto& p : positions)
+    for (int i = 0; i < 3; ++i) p[i] = static_cast<float>(t.random.uniform(-1, 1));
+  t.price(
+      [&] {
+        std::vector<std::uint32_t> out;
+        for (std::uint32_t f = 0; f < faces.size(); ++f)
+          if (textbook(positions[faces[f].x], positions[faces[f].y], positions[faces[f].z]) > 0)
+            out.push_back(f);
+        keep(out.size());
+      },
+      [&] { keep(showing(1).size()); });
+}
+
+void beyond_the_guard_band(Trial& t) {
+  // The textbook: corners in 1/256 px as 32-bit integers, which wrap around.
+  const auto textbook = [](const ClipTriangle& triangle, int size) {
+    std::array<std::array<std::int32_t, 2>, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto fixed = [&](float ndc, float sign) {
+        const double px = (static_cast<double>(sign * ndc) + 1) * size / 2 * 256;
+        return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::int64_t>(px)));
+      };
+      p[k] = {fixed(triangle[k].x / triangle[k].w, 1), fixed(triangle[k].y / triangle[k].w, -1)};
+    }
+    const auto edge = [&](std::size_t i, std::size_t j, int x, int y) {
+      const auto w = [](std::int32_t v) { return static_cast<std::uint32_t>(v); };
+      const std::uint32_t e =
+          (w(p[j][0]) - w(p[i][0])) * (w(y) - w(p[i][1])) - (w(p[j][1]) - w(p[i][1])) * (w(x) - w(p[i][0]));
+      return static_cast<std::int32_t>(e);
+    };
+    Picture out{
+        size, size, std::vector<std::uint32_t>(static_cast<std::size_t>(size * size), kernels::no_face), {}};
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) {
+        const int px = x * 256 + 128, py = y * 256 + 128;
+        const int a = edge(0, 1, px, py), b = edge(1, 2, px, py), c = edge(2, 0, px, py);
+        if ((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0))
+          out.id[static_cast<std::size_t>(y * size + x)] = 0;
+      }
+    return out;
+  };
+  std::vector<ClipTriangle> inputs;
+  for (std::size_t n = t.samples(20, 1000); n-- > 0;) {
+    ClipTriangle triangle;
+    for (auto& p : triangle)
+      p = {static_cast<float>(t.random.magnitude(0, 24)), static_cast<float>(t.random.magnitude(0, 24)), 0,
+           1};
+    inputs.push_back(triangle);
+  }
+  for (const auto& triangle : inputs) {
+    const auto want = seen(triangle, 64, 64);
+    const auto errors = [&](double band) {
+      return static_cast<double>(wrong_pixels(drawn({&triangle, 1}, 64, 64, band), want));
+    };
+    t.measure(static_cast<double>(wrong_pixels(textbook(triangle, 64), want)),
+              std::max(errors(1), errors(1e4)),
+              {triangle[0].x, triangle[0].y, triangle[1].x, triangle[1].y, triangle[2].x, triangle[2].y});
+  }
+  t.price(
+      [&] {
+        for (const auto& x : inputs) keep(textbook(x, 64).id[0]);
+      },
+      [&] {
+        for (const auto& x : inputs) keep(drawn({&x, 1}, 64, 64).id[0]);
+      });
+}
+
+}  // namespace
+
+std::vector<HardCase> clipping() {
+  return {
+      {"CLP-01", "100000 edges across x = w, walked from either end",
+       "a + t (b - a) from the edge's first end, float", "kernels::clip_halfspace", "comparison of bits",
+       "both neighbours get the same vertex, bit for bit", "edges that crack", 0, shared_edge},
+      {"CLP-02", "triangles with 0 to 3 corners on the plane, -0 among them",
+       "inside where the distance is >= 0", "kernels::clip_halfspace", "rationals",
+       "number of corners and area exact", "wrong polygons", 0, corners_on_the_plane},
+      {"CLP-03", "edges within ulps of the plane, and edges of the largest floats",
+       "t = d0 / (d0 - d1) in float", "kernels::clip_crossing", "rationals",
+       "in the edge's box; within 4 u of its size", "u scale", 4, edge_along_the_plane},
+      {"CLP-04", "triangles across w = 0 whose corners all divide into view",
+       "divide by w, accept what is in view", "clip, viewport and fill kernels",
+       "rays through pixels, 113 bits", "the pixels of the rays, but for those on an edge", "wrong pixels", 0,
+       straddling_the_eye},
+      {"CLP-06", "100000 edges across x = w, clipped twice", "a + t (b - a) in float",
+       "kernels::clip_halfspace", "comparison of bits",
+       "the second clip changes nothing; no new vertex is outside", "vertices outside", 0, clipping_twice},
+      {"CLP-07", "triangles with w from 2^-10 to 2^10, planes in 720 orders", "a + t (b - a) in float",
+       "kernels::clip_triangle", "comparison of snapped corners", "one set of corners, in 1/256 px",
+       "triangles that depend on the order", 0, order_of_planes},
+      {"CLP-08", "triangles with one or three corners at w = 0", "divide by w, rasterize",
+       "clip, viewport and fill kernels", "rays through pixels, 113 bits",
+       "finite; the pixels of the rays and of w = 1e-30", "wrong pixels", 0, at_infinity},
+      {"CLP-09", "faces within an ulp of the sides, some with corners behind the eye",
+       "outside the cube after the divide", "cull::faces_not_outside", "exact comparison",
+       "nothing visible is culled, nothing outside is kept", "visible faces culled", 0, conservative_culling},
+      {"CLP-10", "faces in planes through the eye, corners at 1e7, moved by an ulp",
+       "sign of n.(eye - a), float", "cull::faces_showing", "rationals",
+       "the sign is exact; edge-on is neither side", "wrong sides", 0, edge_on_faces},
+      {"CLP-14", "corners up to 2^24 half-widths off the screen", "edge functions in 32-bit integers",
+       "clip with guard bands 1 and 10000, viewport and fill kernels", "rays through pixels, 113 bits",
+       "the pixels of the rays, but for those on an edge", "wrong pixels", 0, beyond_the_guard_band},
+  };
+}
+
+}  // namespace frustum::hard
