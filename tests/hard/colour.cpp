@@ -59,7 +59,7 @@ void around_the_spaces(Trial& t) {
   const auto there = config.conversion("srgb", "lin_rec2020"),
              back = config.conversion("lin_rec2020", "srgb");
   for (std::size_t i = t.samples(50000, 1u << 24); i-- > 0;) {
-    const std::size_t code = t.samples(0, 1) == 1 ? i : t.random.below(1 << 24);
+    const std::size_t code = t.full() ? i : t.random.below(1 << 24);
     std::array<float, 3> c{};
     for (std::size_t k = 0; k < 3; ++k) c[k] = static_cast<float>(code >> (8 * k) & 255) / 255;
     const auto start = c;
@@ -95,8 +95,9 @@ void transfer_joints(Trial& t) {
     }
     for (int i = 0; i < 256; ++i) {
       const float code = static_cast<float>(i) / 255;
-      t.require(std::nearbyint(kernels::encode(curve, kernels::decode(curve, code)) * 255) == i,
-                "every code comes home", {code});
+      t.require(
+          std::nearbyint(kernels::encode(curve, kernels::decode(curve, code)) * 255) == static_cast<float>(i),
+          "every code comes home", {code});
     }
   }
   std::vector<float> r(4096), g(4096), b(4096);

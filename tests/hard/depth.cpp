@@ -4,8 +4,7 @@
 #include "tests/hard/exact.h"
 #include "tests/hard/screen.h"
 #include "tests/hard/stages.h"
-
-#include <tbb/task_arena.h>
+#include "tests/hard/threads.h"
 
 #include <algorithm>
 #include <array>
@@ -212,8 +211,7 @@ void equal_depths(Trial& t) {
   do {
     const auto mesh = mesh_in(order);
     Picture got;
-    tbb::task_arena arena(1 + static_cast<int>(order[0]) * 3);
-    arena.execute([&] { got = filled(mesh.mesh(), 64, 64); });
+    on_threads(1 + static_cast<int>(order[0]) * 3, [&] { got = filled(mesh.mesh(), 64, 64); });
     // The textbook keeps the last of equals.
     t.tally(order[4] != 4, !same_picture(got, first),
             {static_cast<double>(order[0]), static_cast<double>(order[4])});

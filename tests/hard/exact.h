@@ -1,5 +1,5 @@
-// The oracles' arithmetic, none of it the implementation's: rationals (GMP) where the exact answer is one, and
-// reals of any precision (MPFR) that are computed again with twice the digits until two results agree.
+// The oracles' arithmetic, none of it the implementation's: rationals (GMP) where the exact answer is one,
+// and reals of any precision (MPFR) that are computed again with twice the digits until two results agree.
 #pragma once
 
 #include <gmpxx.h>

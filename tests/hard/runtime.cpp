@@ -13,9 +13,9 @@
 #include "tests/hard/exact.h"
 #include "tests/hard/screen.h"
 #include "tests/hard/stages.h"
+#include "tests/hard/threads.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 #include <xmmintrin.h>
 #include <glm/common.hpp>
 
@@ -37,19 +37,14 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity(),
                 nan = std::numeric_limits<float>::quiet_NaN();
 
-// Every value from memory, so that nothing is folded at compile time.
-struct Vectors {
-  volatile float a[3], b[3];
-};
-
 void one_rounding_an_operation(Trial& t) {
   for (std::size_t n = t.samples(50000, 5000000); n-- > 0;) {
-    Vectors v{};
-    for (std::size_t k = 0; k < 3; ++k)
-      v.a[k] = static_cast<float>(t.random.uniform(-1, 1)),
-      v.b[k] = static_cast<float>(t.random.uniform(-1, 1));
-    const glm::vec3 a(v.a[0], v.a[1], v.a[2]), b(v.b[0], v.b[1], v.b[2]);
-    // Each operation in double is exact here (products) or rounds to the same float (sums of two floats).
+    glm::vec3 a, b;
+    for (int k = 0; k < 3; ++k) {
+      a[k] = static_cast<float>(t.random.uniform(-1, 1));
+      b[k] = static_cast<float>(t.random.uniform(-1, 1));
+    }
+    // Products of floats are exact in double, and the sum of two floats rounds to the same float through it.
     const auto product = [](float x, float y) { return static_cast<float>(static_cast<double>(x) * y); };
     const auto sum = [](float x, float y) { return static_cast<float>(static_cast<double>(x) + y); };
     const float want = sum(sum(product(a.x, b.x), product(a.y, b.y)), product(a.z, b.z));
@@ -144,7 +139,7 @@ void any_number_of_threads(Trial& t) {
   };
   const auto in_a_tree = [&](int threads) {
     std::vector<float> leaf((values.size() + 63) / 64);
-    tbb::task_arena(threads).execute([&] {
+    on_threads(threads, [&] {
       tbb::parallel_for(std::size_t{0}, leaf.size(), [&](std::size_t i) {
         leaf[i] = kernels::pairwise_sum<float>(
             std::span(values).subspan(i * 64, std::min<std::size_t>(64, values.size() - i * 64)));
@@ -167,7 +162,7 @@ void any_number_of_threads(Trial& t) {
   const Picture picture = filled(mesh.mesh(), 128, 128);
   for (const int threads : {2, 3, 5, 7, 16}) {
     Picture again;
-    tbb::task_arena(threads).execute([&] { again = filled(mesh.mesh(), 128, 128); });
+    on_threads(threads, [&] { again = filled(mesh.mesh(), 128, 128); });
     const bool same = again.id == picture.id && std::equal(again.z.begin(), again.z.end(), picture.z.begin());
     t.tally(in_shares(threads) != naive_first, in_a_tree(threads) != first || !same,
             {static_cast<double>(threads)});
@@ -211,7 +206,7 @@ void keys_of_odd_numbers(Trial& t) {
 }
 
 void our_own_elementary(Trial& t) {
-  // The textbook reduces an angle by the rounded 2 pi, and takes powers as exp(y log x) in the same precision.
+  // The textbook reduces an angle by the rounded 2 pi, and takes powers as exp(y log x) in double.
   struct Function {
     double (*ours)(double);
     double (*textbook)(double);
@@ -263,7 +258,7 @@ void nothing_and_one(Trial& t) {
     t.require(kernels::pairwise_sum<double>(values) == 3.5 * static_cast<double>(n),
               "sums of nothing and of one", {static_cast<double>(n)});
   }
-  // A row of n pixels from -1 to 1 by 2 c / (n - 1); one pixel; no triangles; no points; an empty row of weights.
+  // A row of one pixel, by -1 + 2 c / (n - 1).
   t.tally(std::isnan(-1 + 2 * 0.0 / (1.0 - 1.0)),
           kernels::Viewport({1, 1}).ndc_from_px({0.5, 0.5}) != glm::dvec2(0), {1});
   const Picture none = filled({}, 1, 1);

@@ -7,9 +7,9 @@
 #include "nodes/kernels/sum.h"
 #include "tests/hard/exact.h"
 #include "tests/hard/stages.h"
+#include "tests/hard/threads.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -165,7 +165,7 @@ void sum_in_any_order(Trial& t) {
   const auto by_threads = [](const std::vector<double>& v, int threads) {
     const std::size_t runs = (v.size() + 63) / 64;
     std::vector<double> leaf(runs);
-    tbb::task_arena(threads).execute([&] {
+    on_threads(threads, [&] {
       tbb::parallel_for(std::size_t{0}, runs, [&](std::size_t i) {
         leaf[i] = kernels::pairwise_sum<double>(
             std::span(v).subspan(i * 64, std::min<std::size_t>(64, v.size() - i * 64)));

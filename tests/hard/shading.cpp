@@ -129,7 +129,7 @@ void attenuation(Trial& t) {
 }
 
 void pole_of_a_patch(Trial& t) {
-  // A patch of a paraboloid z = -(x^2 + y^2) / 2 whose row u = 0 collapses into the pole: points of a row share
+  // A patch of a paraboloid whose row u = 0 collapses into the pole, where it is level: points of a row share
   // a distance r_i, and a quarter turn in v is a cubic. The limit of the normal is +z.
   for (const double angle : {30.0, 60.0, 90.0, 120.0})
     for (const double radius : {1e-3, 1.0, 1e5}) {

@@ -19,7 +19,7 @@ using kernels::EdgeRule;
 constexpr float infinity = std::numeric_limits<float>::infinity(),
                 nan = std::numeric_limits<float>::quiet_NaN();
 
-// A strip of the screen, w0 at its left end and w1 at its right, u from 0 to 1; the exact u at a pixel's middle.
+// A strip of the screen, w0 at its left end and w1 at its right, u from 0 to 1.
 struct Strip {
   ScreenTriangles mesh;
   std::vector<float> u;
@@ -244,7 +244,7 @@ void one_texel_a_pixel(Trial& t) {
             return texels[static_cast<std::size_t>(sy * size + sx) * 4];
           };
           const float want = at(source[turn][0], source[turn][1]);
-          // The textbook: corners of pixels meet corners of texels at x / (N - 1), so that pixels fall between texels.
+          // The textbook: pixel x lies at x / (N - 1), so that pixels fall between texels.
           const float sx = static_cast<float>(x) / (size - 1) * size - 0.5F;
           const int low = std::clamp(static_cast<int>(std::floor(sx)), 0, size - 2);
           const float f = sx - static_cast<float>(low),

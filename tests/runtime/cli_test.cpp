@@ -42,7 +42,7 @@ std::vector<std::string> small(std::vector<std::string> arguments) {
 }
 
 TEST(Cli, HelpHasAnExampleForEveryCommand) {
-  for (const char* command : {"run", "check", "plan", "inspect", "nodes", "diff", "test", "new", "catalog"}) {
+  for (const char* command : {"run", "check", "plan", "inspect", "nodes", "diff", "test", "new", "catalog", "stability"}) {
     const auto r = frustum({command, "--help"});
     EXPECT_EQ(r.code, 0) << command;
     EXPECT_THAT(r.out, AllOf(HasSubstr("Example:\n  frustum " + std::string(command)), HasSubstr("--json")))

@@ -26,33 +26,35 @@ constexpr const char* introduction = R"(# Hard cases stay numerically stable
 
 <!-- Written by `frustum stability --docs docs`; do not edit. -->
 
-Computer graphics is arithmetic on numbers that are almost never exact. Textbook formulas are right on paper and break on
-the machine: a vector of length 1e20 has no direction, two triangles that share an edge leave a hole between them, a mean
-of 10 000 with a spread of 0.1 gets a variance of 135 664, and one NaN eats a picture. Such failures are rare enough to
-survive testing and common enough to be seen.
+Computer graphics is arithmetic on numbers that are almost never exact. Textbook formulas are right on
+paper and break on the machine: a vector of length 1e20 has no direction, two triangles that share an edge
+leave a hole between them, values of 10 000 with a spread of 0.1 get a variance above 100 000, and one
+NaN eats a picture. Such failures are rare enough to survive testing and common enough to be seen.
 
-This page is a catalogue of {total} of them, from the first lesson to the last. Each case that is built is a program that
-does four things:
+This page is a catalogue of {total} of them, from the first lesson to the last. Each case that is built is
+a program that does four things:
 
 1. it feeds the **textbook method** an input on which it fails, and checks that it does fail;
-2. it feeds the same input to **the code of this repository**: the kernel or node that draws your pictures, not a copy;
-3. it compares both with an **exact answer** that shares no code with either: integers of 128 bits, rationals (GMP), or
-   reals of any precision (MPFR) whose digits are doubled until two results agree;
+2. it feeds the same input to **the code of this repository**: the kernel or node that draws your
+   pictures, not a copy;
+3. it compares both with an **exact answer** that shares no code with either: integers of 128 bits,
+   rationals (GMP), or reals of any precision (MPFR) whose digits are doubled until two results agree;
 4. it holds ours to a **bound that was fixed before** anything was measured.
 
-So every row below is a claim with a proof that runs: `frustum stability` runs it here and now, and `./dev test` runs each
-case as a test, `Hard.FND_01` and so on. Where ours did not hold, ours was changed.
+So every row below is a claim with a proof that runs: `frustum stability` runs it here and now,
+and `./dev test` runs each case as a test, `Hard.FND_01` and so on. Where ours did not hold, ours was changed.
 
 )";
 
 constexpr const char* reading = R"(## How to read the tables
 
-**Error** is the worst over all inputs of a case, in the unit of its bound; *inf* means an infinity, a NaN, or nothing at
-all. An **ulp** is the distance between a number and the next one its type can hold; **u** is half an ulp of 1 (2^-24 in
-float, 2^-53 in double), which is what one rounding may cost. **Price** is the time of our method over that of the
-textbook's for the same work, measured in turns in one run: 1 is free, below 1 is faster. Setting up a transform counts
-together with a thousand points that it moves; predicates are timed on inputs where their filter decides, as nearly all
-do. Where there is no price, the two do not do comparable work. Prices are those of the machine that wrote this page.
+**Error** is the worst over all inputs of a case, in the unit of its bound; *inf* means an infinity, a
+NaN, or nothing at all. An **ulp** is the distance between a number and the next one its type can hold;
+**u** is half an ulp of 1 (2^-24 in float, 2^-53 in double), which is what one rounding may cost.
+**Price** is the time of our method over that of the textbook's for the same work, measured in turns in
+one run: 1 is free, below 1 is faster. Setting up a transform counts together with a thousand points that
+it moves; predicates are timed on inputs where their filter decides, as nearly all do. Where there is no
+price, the two do not do comparable work. Prices are those of the machine that wrote this page.
 
 ```
 frustum stability                        every case, its two errors, bound and price
@@ -61,8 +63,8 @@ frustum stability --full                 up to a hundred times as many inputs
 frustum stability --json                 with methods, oracles and worst inputs as hexadecimal floats
 ```
 
-A case is one value in `tests/hard/<stage>.cpp`: texts for this page and a function that measures. Adding one edits no
-other file than the catalogue's row.
+A case is one value in `tests/hard/<stage>.cpp`: texts for this page and a function that measures. Adding
+one edits no other file than the catalogue's row.
 
 )";
 

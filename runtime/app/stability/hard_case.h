@@ -1,5 +1,5 @@
-// A hard case of numerics as a value: what is fed, the textbook method that fails on it, the kernel or node of
-// this repository that does not, an exact oracle, and a criterion that was fixed before anything was measured.
+// A hard case of numerics as a value: what is fed, the textbook method that fails on it, the kernel or node
+// of this repository that does not, an exact oracle, and a criterion fixed before anything was measured.
 // The cases themselves stand in tests/hard, one file a stage; adding one there edits nothing here.
 #pragma once
 

@@ -19,8 +19,8 @@ struct Plot {
   double bound = 0;  // drawn as a dashed line; 0: none
 };
 
-// The y axis is logarithmic to base 10, from 1e-2 to 1e9; x is linear in the given numbers. Text only, the same
-// on every machine for the same points.
+// The y axis is logarithmic to base 10, from 1e-2 to 1e9; x is linear in the given numbers. The same text on
+// every machine for the same points.
 std::string svg_text(const Plot&);
 
 }  // namespace frustum::stability

@@ -62,6 +62,7 @@ class Trial {
 
   Random random;  // seeded by the id
 
+  bool full() const { return full_; }  // asked for many more inputs
   std::size_t samples(std::size_t usual, std::size_t full) const { return full_ ? full : usual; }
 
   // The errors of both methods at one input, in the case's unit.
