@@ -3,6 +3,7 @@
 #include "nodes/io.h"
 #include "runtime/core/node_type.h"
 #include "runtime/io/file_bytes.h"
+#include "runtime/io/gltf.h"
 #include "runtime/io/mesh_readers.h"
 
 #include <fmt/format.h>
@@ -40,17 +41,21 @@ Outputs run(const Inputs&, const Params& p, Context& ctx) {
 }  // namespace
 
 NodeType nodes::io_load_mesh() {
-  return node("io.load_mesh", run)
-      .doc("Reads a triangle mesh from an OBJ, PLY or STL file.")
-      .cite(
-          "Wavefront, The Advanced Visualizer: Object Files (.obj), appendix B1; Turk 1994, The PLY Polygon "
-          "File Format")
-      .param("file", &Params::file,
-             "A .obj, .ply or .stl file; polygons become triangles, usemtl gives each face its material.")
-      .output("mesh", &Outputs::mesh,
-              "The vertices of the file, one for each distinct v/vt/vn of an OBJ; normals that it lacks are "
-              "computed.",
-              {.space = Space::object});
+  NodeType type = node("io.load_mesh", run)
+                      .doc("Reads a triangle mesh from a glTF, OBJ, PLY or STL file.")
+                      .cite(
+                          "Wavefront, The Advanced Visualizer: Object Files (.obj), appendix B1; Turk 1994, "
+                          "The PLY Polygon "
+                          "File Format")
+                      .param("file", &Params::file,
+                             "A .gltf, .glb, .obj, .ply or .stl file; polygons become triangles, faces keep "
+                             "their materials.")
+                      .output("mesh", &Outputs::mesh,
+                              "The vertices of the file, of a glTF every instance in its place; normals that "
+                              "it lacks are made.",
+                              {.space = Space::object});
+  depend_on_files_beside(type);
+  return type;
 }
 
 }  // namespace frustum

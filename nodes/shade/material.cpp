@@ -17,6 +17,7 @@ struct Params {
   double shininess = 32;
   Color emission{glm::dvec3{0}};
   bool two_sided = false;
+  bool unlit = false;
 };
 struct Outputs {
   Ref<Material> material;
@@ -39,7 +40,8 @@ Outputs run(const Inputs&, const Params& p, Context& ctx) {
                    .specular = p.specular.rgb,
                    .shininess = p.shininess,
                    .emission = p.emission.rgb,
-                   .two_sided = p.two_sided};
+                   .two_sided = p.two_sided,
+                   .unlit = p.unlit};
   if (const double share = largest_reflectance(m.diffuse, m.specular, lobe_of(m)); share > 1)
     ctx.warn("makes_energy",
              fmt::format("the surface sends back {:.3g} of the light that falls on it", share));
@@ -69,6 +71,7 @@ NodeType nodes::shade_material() {
              {.range = at_least(0)})
       .param("two_sided", &Params::two_sided,
              "Whether backs are lit as if turned around; cull.backface keeps them where it is told.")
+      .param("unlit", &Params::unlit, "Whether it shows its diffuse colour and texture whatever the light.")
       .output("material", &Outputs::material, "The material, for shade.surface.");
 }
 

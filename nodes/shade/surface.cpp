@@ -82,6 +82,10 @@ Surface<R> surface_of(const Material& m, const glm::dvec3& ambient_light) {
       kernels::Highlight::none,
       kernels::Exponent<R>(m.shininess),
       m.two_sided};
+  if (m.unlit) {
+    s.colors.ambient = s.colors.diffuse, s.colors.diffuse = {};
+    return s;
+  }
   if (m.model == Reflection::lambert || m.specular == glm::dvec3{0}) return s;
   s.colors.specular = narrow<R>(m.specular);
   s.highlight = m.model == Reflection::phong ? kernels::Highlight::phong : kernels::Highlight::blinn;

@@ -18,7 +18,7 @@ void hash_material(const Material& m, Hasher& h) {
   h.text(m.name).value(m.model);
   for (const glm::dvec3& v : {m.ambient, m.diffuse, m.specular, m.emission})
     h.value(v.x).value(v.y).value(v.z);
-  h.value(m.shininess).value(m.two_sided).value(m.uv_set).value(m.texture != nullptr);
+  h.value(m.shininess).value(m.two_sided).value(m.unlit).value(m.uv_set).value(m.texture != nullptr);
   if (m.texture) h.value(m.texture->digest());
   for (glm::length_t column = 0; column < 3; ++column)
     for (glm::length_t row = 0; row < 3; ++row) h.value(m.texture_from_uv[column][row]);
@@ -57,7 +57,8 @@ struct Ops {
                 {"specular", json(m.specular)},
                 {"shininess", json_number(m.shininess)},
                 {"emission", json(m.emission)},
-                {"two_sided", m.two_sided}};
+                {"two_sided", m.two_sided},
+                {"unlit", m.unlit}};
     if (m.texture) {
       out["texture"] = buffer_type<Texture>().summary(m.texture.get());
       out["uv"] = uv_column_name(m.uv_set);

@@ -35,6 +35,7 @@ struct Material {
   double shininess = 32;          // exponent of the lobe, >= 0
   glm::dvec3 emission{0};         // light of its own, added to what it reflects
   bool two_sided = false;         // its back is shaded as if turned around, and never culled
+  bool unlit = false;             // shows its diffuse colour and texture whatever the light
   Ref<Texture> texture = {};      // scales ambient and diffuse, in texture.sample; null: none
   std::uint32_t uv_set = 0;       // which coordinates the texture takes: 0 column "uv", 1 "uv1", 2 "uv2" ...
   glm::dmat3 texture_from_uv{1};  // affine, on (u, v, 1): the place in the texture

@@ -38,6 +38,10 @@ ImageFile read_image(const std::string& path, std::string_view name, int subimag
   return image_module().read(path, name, subimage);
 }
 
+ImageFile read_image_bytes(std::string_view bytes, std::string_view name) {
+  return image_module().read_bytes(bytes, name);
+}
+
 std::unique_ptr<Sink> open_image_sink(const SinkRequest& request) {
   const SinkPlan plan = plan_sink(request);
   return image_module().open(request, plan);

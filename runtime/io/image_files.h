@@ -30,6 +30,10 @@ struct ImageFile {
 // file that is no picture, is truncated or lies about its size.
 ImageFile read_image(const std::string& path, std::string_view name, int subimage = 0);
 
+// The same of a picture file in memory, told by its content (PNG, JPEG, WebP, OpenEXR, HDR, TIFF, BMP), but for
+// its alpha, which says here what the file says: colours stored straight stay so (Alpha::straight).
+ImageFile read_image_bytes(std::string_view bytes, std::string_view name);
+
 // Extensions of the files that open_image_sink writes, without dots.
 std::vector<std::string> writable_extensions();
 

@@ -10,6 +10,7 @@ class ImageModule {
  public:
   virtual ~ImageModule() = default;
   virtual ImageFile read(const std::string& path, std::string_view name, int subimage) const = 0;
+  virtual ImageFile read_bytes(std::string_view bytes, std::string_view name) const = 0;
   virtual std::unique_ptr<Sink> open(const SinkRequest&, const SinkPlan&) const = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "runtime/io/mesh_readers.h"
 
+#include "runtime/io/gltf.h"
 #include "runtime/io/obj.h"
 #include "runtime/io/ply.h"
 #include "runtime/io/stl.h"
@@ -10,6 +11,8 @@ namespace frustum {
 namespace {
 
 constexpr std::array readers{
+    MeshReader{"gltf", "glTF 2.0", read_gltf_mesh},
+    MeshReader{"glb", "GLB", read_gltf_mesh},
     MeshReader{"obj", "Wavefront OBJ", read_obj},
     MeshReader{"ply", "PLY", read_ply},
     MeshReader{"stl", "STL", read_stl},

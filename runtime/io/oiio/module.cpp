@@ -9,6 +9,9 @@ class OiioModule : public frustum::ImageModule {
   frustum::ImageFile read(const std::string& path, std::string_view name, int subimage) const override {
     return frustum::oiio::read(path, name, subimage);
   }
+  frustum::ImageFile read_bytes(std::string_view bytes, std::string_view name) const override {
+    return frustum::oiio::read_bytes(bytes, name);
+  }
   std::unique_ptr<frustum::Sink> open(const frustum::SinkRequest& request,
                                       const frustum::SinkPlan& plan) const override {
     return frustum::oiio::open(request, plan);

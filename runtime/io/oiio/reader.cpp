@@ -3,6 +3,7 @@
 #include "runtime/core/error.h"
 #include "runtime/io/primaries.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -27,7 +28,8 @@ struct File {
   }
 };
 
-void check_readable(const std::string& path, const File& file) {
+// Returns the size of the file.
+std::uint64_t check_readable(const std::string& path, const File& file) {
   struct stat info {};
   std::string_view why;
   if (stat(path.c_str(), &info) != 0)
@@ -35,6 +37,7 @@ void check_readable(const std::string& path, const File& file) {
   else if (!S_ISREG(info.st_mode))
     why = "it is not a regular file";
   if (!why.empty()) throw WorldError("cannot_read_file", fmt::format("cannot read {}: {}", file.name, why));
+  return static_cast<std::uint64_t>(info.st_size);
 }
 
 std::string one_line(std::string text) {
@@ -49,6 +52,40 @@ std::unique_ptr<lib::ImageInput> open_input(const std::string& path, const File&
   auto input = lib::ImageInput::open(path, &hints);
   if (!input) file.malformed(one_line(lib::geterror()));
   return input;
+}
+
+// The extension of the format whose first bytes these are.
+std::string_view format_of(std::string_view bytes) {
+  constexpr std::pair<std::string_view, std::string_view> beginnings[] = {
+      {"\x89PNG", "png"}, {"\xFF\xD8\xFF", "jpg"}, {"v/1\x01", "exr"},    {"#?RADIANCE", "hdr"},
+      {"#?RGBE", "hdr"},  {{"II*\0", 4}, "tif"},   {{"MM\0*", 4}, "tif"}, {"BM", "bmp"}};
+  for (const auto& [beginning, extension] : beginnings)
+    if (bytes.starts_with(beginning)) return extension;
+  return bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP") ? "webp" : "";
+}
+
+std::unique_ptr<lib::ImageInput> open_memory(lib::Filesystem::IOMemReader& memory, std::string_view bytes,
+                                             const File& file) {
+  const std::string_view format = format_of(bytes);
+  if (format.empty()) file.malformed("this is no picture of a kind that is read from memory");
+  lib::ImageSpec hints;
+  hints.attribute("oiio:UnassociatedAlpha", 1);
+  // Named twice: readers forget the one they were made with when they are opened with hints (2.4.7).
+  lib::Filesystem::IOProxy* proxy = &memory;
+  hints.attribute("oiio:ioproxy", lib::TypeDesc::PTR, static_cast<void*>(&proxy));
+  auto input = lib::ImageInput::open(fmt::format("memory.{}", format), &hints, proxy);
+  if (!input) file.malformed(one_line(lib::geterror()));
+  return input;
+}
+
+// No file packs pixels tighter than this: deflate, the tightest of the compressions, makes at most 1032 bytes of
+// one, which are 8 pixels each where they are one bit. A file that claims more is lying, and nothing is
+// allocated for it.
+void check_size(const lib::ImageSpec& s, std::uint64_t file_bytes, const File& file) {
+  const double claimed = static_cast<double>(s.image_bytes(true));
+  if (claimed > 16384.0 * static_cast<double>(file_bytes) + 0x1p24)
+    file.malformed(fmt::format("it says {} x {} pixels, more than its {} bytes can hold", s.width, s.height,
+                               file_bytes));
 }
 
 void check_spec(const lib::ImageSpec& s, const File& file) {
@@ -248,12 +285,13 @@ Raster upright(const Raster& stored, int orientation) {
   return out;
 }
 
-ImageFile read_all(const std::string& path, int subimage, const File& file) {
-  const auto in = open_input(path, file);
+ImageFile read_all(lib::ImageInput* in, int subimage, std::uint64_t file_bytes, bool keep_alpha,
+                   const File& file) {
   if (subimage < 0 || !in->seek_subimage(subimage, 0))
     file.malformed(fmt::format("there is no subimage {}", subimage));
   const lib::ImageSpec spec = in->spec();
   check_spec(spec, file);
+  check_size(spec, file_bytes, file);
   Frame f{.window = {spec.x, spec.y, spec.x + spec.width, spec.y + spec.height}};
   const auto names = plane_names(spec);
   for (int c = 0; c < spec.nchannels; ++c)
@@ -263,12 +301,13 @@ ImageFile read_all(const std::string& path, int subimage, const File& file) {
                     (names.size() == 1 || (names.size() == 2 && names[1] == "A"));
   const bool color = grey || (f.find("R") && f.find("G") && f.find("B"));
   if (color) f.color_space = color_space_of(spec);
-  if (f.find("A")) f.alpha = Alpha::premultiplied;
+  const bool straight = spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
+  if (f.find("A")) f.alpha = straight && keep_alpha ? Alpha::straight : Alpha::premultiplied;
   Raster raster(f);
   fill(*in, spec, subimage, raster, file);
   in->close();
   if (grey) raster = with_rgb(raster);
-  if (spec.get_int_attribute("oiio:UnassociatedAlpha") != 0) premultiply(raster);
+  if (straight && !keep_alpha) premultiply(raster);
   ImageFile out{.raster = raster,
                 .display_window = {spec.full_x, spec.full_y, spec.full_x + spec.full_width,
                                    spec.full_y + spec.full_height},
@@ -282,15 +321,12 @@ ImageFile read_all(const std::string& path, int subimage, const File& file) {
   return out;
 }
 
-}  // namespace
-
-ImageFile read(const std::string& path, std::string_view name, int subimage) {
-  const File file{name};
-  check_readable(path, file);
+template <class Read>
+ImageFile guarded(const File& file, Read&& read) {
   try {
-    return read_all(path, subimage, file);
+    return read();
   } catch (const std::bad_alloc&) {
-    throw WorldError("out_of_memory", fmt::format("no memory for the pixels of {}", name));
+    throw WorldError("out_of_memory", fmt::format("no memory for the pixels of {}", file.name));
   } catch (const NodeError&) {
     throw;
   } catch (const WorldError&) {
@@ -298,6 +334,22 @@ ImageFile read(const std::string& path, std::string_view name, int subimage) {
   } catch (const std::exception& e) {
     file.malformed(e.what());
   }
+}
+
+}  // namespace
+
+ImageFile read(const std::string& path, std::string_view name, int subimage) {
+  const File file{name};
+  const std::uint64_t bytes = check_readable(path, file);
+  return guarded(file, [&] { return read_all(open_input(path, file).get(), subimage, bytes, false, file); });
+}
+
+ImageFile read_bytes(std::string_view bytes, std::string_view name) {
+  const File file{name};
+  return guarded(file, [&] {
+    lib::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+    return read_all(open_memory(memory, bytes, file).get(), 0, bytes.size(), true, file);
+  });
 }
 
 }  // namespace frustum::oiio

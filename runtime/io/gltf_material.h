@@ -1,0 +1,35 @@
+// Materials of a glTF file as ours.
+#pragma once
+
+#include "runtime/buffers/material.h"
+#include "runtime/core/context.h"
+#include "runtime/io/gltf_data.h"
+#include "runtime/io/gltf_notes.h"
+
+#include <cstdint>
+#include <span>
+
+namespace frustum::gltf {
+
+// The materials with the numbers `used`, in that order, with their textures where `textures` is set. How the
+// metallic-roughness model becomes a Blinn lobe (glTF 2.0, appendix B; Walter et al. 2007, EGSR, "Microfacet
+// models for refraction", eq. 30; Karis 2013, "Real shading in Unreal Engine 4"):
+//
+//   F0         = 0.04 + (base - 0.04) metallic, of the base colour factor; 0.04 is an index of 1.5
+//   diffuse    = base (1 - metallic) (1 - 0.04): what the surface lets in at normal incidence
+//   shininess  = 2 / alpha^2 - 2 with alpha = roughness^2: the exponent n for which D = (n + 2) / (2 pi)
+//                cos^n h is as wide as the GGX lobe; rounded, and at most 1024
+//   specular   = F0 (n + 2) / 8: the microfacet lobe D F G / (4 n.l n.v) under a light of colour 1 (which is
+//                an irradiance of pi) with G = n.l n.v, at its peak
+//
+// The reflectance of that lobe at normal incidence is F0 (n + 2^(-n/2)) / (n + 4) <= F0, so a mapped material
+// never sends back more than it gets. A texture scales the diffuse part alone. A metallic-roughness texture
+// counts as the mean of its texels. Unlit materials keep their colour whatever the light. What does not map
+// is noted once a kind.
+//
+// Pictures are decoded and their pyramids made in parallel, each once however often it is used. Throws
+// NodeError("malformed_file") and WorldError("cannot_read_file") naming the image's element.
+MaterialSet read_materials(const Object& document, const FilePath& file, Data& data,
+                           std::span<const std::size_t> used, bool textures, Notes& notes, Context& ctx);
+
+}  // namespace frustum::gltf
