@@ -142,6 +142,8 @@ NodeType nodes::color_convert() {
                  "OpenColorIO configuration; empty: the file that $OCIO names, else the embedded one.")
           .param("engine", &Params::engine,
                  "Who converts between embedded spaces: frustum's exact curves, or OpenColorIO.")
+          .knob({"ocio", "exact"},
+                "OpenColorIO's optimised curves are off by up to 7.6e-7, in the toe relatively 2.5e-4.")
           .output("image", &Outputs::image,
                   "The same window, samples and planes, in the colour space asked for.");
   depend_on_color_environment(type);

@@ -185,6 +185,8 @@ NodeType nodes::rasterize_attributes() {
       .param("interpolation", &Params::interpolation,
              "hyperbolic is straight in the scene; affine is straight on the screen, so textures swim in "
              "perspective.")
+      .knob({"affine", "hyperbolic"},
+            "affine saves a division a sample and is off by O(k^2) over a depth range of k.")
       .output("points", &Outputs::points,
               "id, uv with derivatives, N, P, w and other columns; 0 where nothing is seen.");
 }

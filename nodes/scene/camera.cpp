@@ -57,6 +57,8 @@ NodeType nodes::scene_camera() {
              {.unit = "world units", .range = above(0)})
       .param("reversed_z", &Params::reversed_z,
              "Depth falls from 1 at near to 0 at far, which resolves far distances better.")
+      .knob_of_taste({"false", "true"},
+                     "In single precision, steps of depth grow like z^2 one way and like z the other.")
       .param("resolution", &Params::resolution,
              "Width and height of the picture; their ratio is that of the view.",
              {.unit = "px", .range = between(1, 65536)})

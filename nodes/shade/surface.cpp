@@ -473,8 +473,11 @@ NodeType nodes::shade_surface() {
       .input("camera", &Inputs::camera, "Where highlights are seen from; left out, the camera of the mesh.")
       .param("interpolation", &Params::interpolation,
              "What is lit: each face once, each vertex (gouraud), or each point with its own normal (phong).")
+      .knob({"flat", "gouraud", "phong"},
+            "On a smooth surface cut to edges h, flat is off by O(h), gouraud by O(h^2).")
       .param("rate", &Params::rate,
              "Light every sample, or once a pixel and face, at the mean of that face's samples.")
+      .knob({"pixel", "sample"}, "Light varies little within a pixel, except in highlights smaller than one.")
       .param("two_sided", &Params::two_sided,
              "Whether all faces, not just those of two-sided materials, are lit as if turned to the camera.")
       .output("color", &Outputs::color,

@@ -198,9 +198,14 @@ NodeType nodes::supersample_resolve() {
              "Samples; planes of integers are left out. Without a pattern, pixel centres.")
       .param("filter", &Params::filter,
              "Shape of the weights; mitchell keeps edges sharp, with faint lobes beside them.")
+      .knob_of_taste(
+          {"box", "bartlett", "gaussian", "mitchell"},
+          "Wider filters read more samples a pixel: less aliasing for more time; sharpness is taste.")
       .param("radius", &Params::radius,
              "Where the filter ends; null is its usual one: 0.5, 1, 1.5 and 2. Raising it blurs.",
              {.unit = "px", .range = between(0.5, 16)})
+      .knob_of_taste({"0.5", "1", "1.5", "2", "3"},
+                     "Reads (2 r)^2 pixels of samples: less aliasing, more blur, more time.")
       .output("image", &Outputs::image,
               "One value a pixel; where all samples in reach are equal, exactly that value.")
       .reads(reads);

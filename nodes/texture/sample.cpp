@@ -302,6 +302,9 @@ NodeType nodes::texture_sample() {
       .input("material", &Inputs::material, "One material for everything, instead of the mesh's own.")
       .param("filter", &Params::filter,
              "What stands for a pixel: one texel, four of level 0, or two levels by footprint.")
+      .knob({"nearest", "bilinear", "trilinear"},
+            "nearest and bilinear alias where the texture is minified; trilinear reads eight texels and "
+            "blurs a little.")
       .output("image", &Outputs::image, "Colour at every sample, linear Rec.709, premultiplied.");
 }
 

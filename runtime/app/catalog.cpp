@@ -76,6 +76,20 @@ Json node_json(const NodeType& type) {
           {"example", example_path(type.name)}};
 }
 
+Json knobs_json(const NodeType& type) {
+  Json out = Json::array();
+  const auto defaults = type.default_params();
+  const Json schema = json_schema(type.params, {}, defaults.get());
+  for (const ParamField& f : type.params.fields) {
+    if (!f.knob) continue;
+    Json knob = schema["properties"][f.name]["x-knob"];
+    knob["param"] = f.name;
+    knob["default"] = f.type->write(static_cast<const char*>(defaults.get()) + f.offset);
+    out.push_back(std::move(knob));
+  }
+  return out;
+}
+
 CatalogChanges write_catalog(const Registry& registry, const CatalogFolders& folders, bool check) {
   Writer out(check);
   std::set<std::string> schemas, pages{"index.md"};

@@ -25,6 +25,9 @@ std::string example_path(std::string_view node_type);
 // JSON Schema.
 Json node_json(const NodeType& type);
 
+// The knobs of a node: {"param", "values", "basis", "slope", "taste", "default"}, in the order of its parameters.
+Json knobs_json(const NodeType& type);
+
 // Draft 2020-12 schemas. Anywhere in a node's parameters the text "$name" may stand for a graph parameter.
 Json params_schema(const NodeType& type);
 Json graph_schema(const Registry& registry);

@@ -56,6 +56,24 @@ std::string params_table(const NodeType& type) {
          field_rows(type.params, defaults.get(), "");
 }
 
+std::string knobs_table(const NodeType& type) {
+  std::string rows;
+  for (const ParamField& f : type.params.fields)
+    if (f.knob)
+      rows += fmt::format("| `{}` | {} | {} | {} |\n", f.name, fmt::join(f.knob->values, ", "),
+                          f.knob->taste   ? "taste"
+                          : f.knob->slope ? fmt::format("{}", *f.knob->slope)
+                                          : "",
+                          in_table(f.knob->basis));
+  if (rows.empty()) return "";
+  return "\n## Knobs\n\nWhat `frustum sweep` turns, from cheap to exact; the slope is that of log(error) "
+         "over "
+         "log(value). Knobs of taste are swept only where they are named.\n\n| parameter | values | slope | "
+         "why |\n"
+         "| --- | --- | --- | --- |\n" +
+         rows;
+}
+
 }  // namespace
 
 std::string type_names(const Port& port) {
@@ -119,7 +137,7 @@ std::string node_page(const NodeType& type) {
                          : "A geometry node: whole buffers in, whole buffers out.\n";
   if (type.foreign) out += "A library computes its numbers: the same bytes on one processor only.\n";
   out += ports_table("Inputs", type.inputs, true) + ports_table("Outputs", type.outputs, false) +
-         params_table(type);
+         params_table(type) + knobs_table(type);
   if (!type.citations.empty()) {
     out += "\n## Sources\n\n";
     for (const std::string& c : type.citations) out += fmt::format("- {}\n", c);

@@ -68,8 +68,34 @@ std::string node_text(const NodeType& type) {
   return out + fmt::format("\nexample: {}\n", example_path(type.name));
 }
 
-int nodes(const std::string& wanted, bool json) {
+// Every knob of the catalogue, or of one node.
+int knobs(const Registry& registry, const NodeType* only, bool json) {
+  Json list = Json::array();
+  std::string text;
+  for (const auto& [name, type] : registry) {
+    if (only != nullptr && only != &type) continue;
+    for (Json knob : knobs_json(type)) {
+      std::string values;
+      for (const Json& v : knob["values"])
+        values += (values.empty() ? "" : " ") + (v.is_string() ? v.get<std::string>() : v.dump());
+      std::string head = fmt::format("{}:{}  {}", name, knob["param"].get<std::string>(), values);
+      if (knob.contains("slope")) head += fmt::format("  (error ~ value^{})", knob["slope"].dump());
+      if (knob.contains("taste")) head += "  (taste)";
+      text += described(head, knob["basis"].get<std::string>());
+      knob["node"] = name;
+      list.push_back(std::move(knob));
+    }
+  }
+  if (json)
+    print(Json{{"knobs", list}});
+  else
+    print(text);
+  return done;
+}
+
+int nodes(const std::string& wanted, bool only_knobs, bool json) {
   const Session session;
+  if (only_knobs && wanted.empty()) return knobs(session.registry(), nullptr, json);
   if (wanted.empty()) {
     if (!json) return print(catalogue_text(session.registry())), done;
     Json list = Json::array();
@@ -86,6 +112,7 @@ int nodes(const std::string& wanted, bool json) {
                   .suggestions = nearest_names(wanted, session.registry().names())});
     return fail(problems, json);
   }
+  if (only_knobs) return knobs(session.registry(), type, json);
   if (json)
     print(node_json(*type));
   else
@@ -97,10 +124,13 @@ int nodes(const std::string& wanted, bool json) {
 
 void add_nodes(CLI::App& app, Invocation& chosen) {
   auto wanted = std::make_shared<std::string>();
-  CLI::App& c = add_command(app, chosen, "nodes", "Lists the node types, or shows one in full.",
-                            "frustum nodes clip.homogeneous",
-                            [wanted, &chosen] { return nodes(*wanted, chosen.json); });
+  auto only_knobs = std::make_shared<bool>(false);
+  CLI::App& c = add_command(
+      app, chosen, "nodes", "Lists the node types, or shows one in full.", "frustum nodes clip.homogeneous",
+      [wanted, only_knobs, &chosen] { return nodes(*wanted, *only_knobs, chosen.json); });
   c.add_option("type", *wanted, "A node type.")->type_name("TYPE");
+  c.add_flag("--knobs", *only_knobs,
+             "Only the parameters that trade accuracy for time, from cheap to exact.");
 }
 
 }  // namespace frustum::cli

@@ -120,6 +120,15 @@ class NodeBuilder {
     fields_.field(name, member, doc, options);
     return *this;
   }
+  // The parameter described last trades accuracy for time: `order` from cheap to exact.
+  NodeBuilder& knob(std::initializer_list<std::string_view> order, std::string_view basis,
+                    std::optional<double> slope = {}) {
+    return fields_.knob({{order.begin(), order.end()}, std::string(basis), slope, false}), *this;
+  }
+  // Its values make other pictures, none of them wrong: swept only where it is asked for.
+  NodeBuilder& knob_of_taste(std::initializer_list<std::string_view> order, std::string_view basis) {
+    return fields_.knob({{order.begin(), order.end()}, std::string(basis), {}, true}), *this;
+  }
   template <class M>
   NodeBuilder& output(std::string_view name, M O::* member, std::string_view doc, PortOptions options = {}) {
     type_.outputs.push_back(port<O>(name, member, doc, options));

@@ -63,6 +63,14 @@ struct ParamOptions {
   Range range = {};            // holds for every number inside an array
 };
 
+// A parameter that trades accuracy for time, or for something else: what `frustum sweep` turns.
+struct Knob {
+  std::vector<std::string> values = {};  // as --set takes them, from cheap to exact; at least two
+  std::string basis = {};                // what is traded, and why the slope is what it is: one sentence
+  std::optional<double> slope = {};      // of log(error) over log(value), where theory has one; numbers only
+  bool taste = false;  // other values are another picture, not a worse one: swept only where it is asked for
+};
+
 struct ParamType;
 
 struct ParamField {
@@ -71,6 +79,7 @@ struct ParamField {
   ParamOptions options;
   const ParamType* type = nullptr;
   std::size_t offset = 0;  // of the member in its struct
+  std::optional<Knob> knob = {};
 };
 
 // Reads with diagnostics instead of exceptions; knows where in the document it is.
@@ -135,7 +144,12 @@ class Fields {
     static const S probe{};
     const auto offset = reinterpret_cast<const char*>(&(probe.*member)) - reinterpret_cast<const char*>(&probe);
     type_.fields.push_back(
-        {std::string(name), std::string(doc), options, &param_type<M>(), static_cast<std::size_t>(offset)});
+        {std::string(name), std::string(doc), options, &param_type<M>(), static_cast<std::size_t>(offset), {}});
+    return *this;
+  }
+  // Makes the field that was described last a knob.
+  Fields& knob(Knob k) {
+    type_.fields.back().knob = std::move(k);
     return *this;
   }
   // Of all fields (each an optional) exactly one is written.

@@ -32,12 +32,25 @@ Json color_schema(const ParamOptions& options) {
                                              {"additionalProperties", false}}})}};
 }
 
+Json knob_json(const Knob& knob) {
+  Json values = Json::array();
+  for (const std::string& v : knob.values) {
+    Json value = Json::parse(v, nullptr, false);
+    values.push_back(value.is_discarded() ? Json(v) : std::move(value));
+  }
+  Json out = {{"values", std::move(values)}, {"basis", knob.basis}};
+  if (knob.slope) out["slope"] = *knob.slope;
+  if (knob.taste) out["taste"] = true;
+  return out;
+}
+
 Json record_schema(const ParamType& type, const void* defaults) {
   Json properties = Json::object();
   for (const ParamField& f : type.fields) {
     const void* member = defaults != nullptr ? static_cast<const char*>(defaults) + f.offset : nullptr;
     Json p = {{"description", f.doc}};
     p.update(json_schema(*f.type, f.options, member));
+    if (f.knob) p["x-knob"] = knob_json(*f.knob);
     properties[f.name] = std::move(p);
   }
   Json out = {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};

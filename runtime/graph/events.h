@@ -32,6 +32,7 @@ struct PixelNodeTime {
   std::string node;
   std::chrono::nanoseconds time{0};
   std::uint64_t pixels = 0;  // filled, margins included
+  std::uint64_t samples = 0;  // the same times the samples of a pixel
 };
 
 // Called from several threads, one call at a time.

@@ -255,9 +255,12 @@ class Pass {
                   .thread = std::max(0, tbb::this_task_arena::current_thread_index()), .counters = {}};
     for (std::size_t i = 0; i < ops_.size(); ++i) {
       const std::string& id = graph_.nodes[pass_.nodes[i]].id;
-      PixelNodeTime t{id, outcome.costs.time[i], outcome.costs.pixels[i]};
+      PixelNodeTime t{id, outcome.costs.time[i], outcome.costs.pixels[i], 0};
       for (const TileCosts& c : early_)
         if (i < c.time.size()) t.time += c.time[i], t.pixels += c.pixels[i];
+      const auto& frames = ops_[i].prepared->frames;
+      if (!frames.empty() && frames.front())
+        t.samples = t.pixels * static_cast<std::uint64_t>(frames.front()->samples());
       times.push_back(t);
       done.nodes.push_back(id);
     }

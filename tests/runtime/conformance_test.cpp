@@ -1,8 +1,8 @@
 // What every node type and every example graph has to hold: walked from the registry and the folders, so
 // that a node that is added is held to it without a line here.
 #include "runtime/app/catalog.h"
-#include "runtime/app/metrics/metrics.h"
 #include "runtime/app/files.h"
+#include "runtime/app/metrics/metrics.h"
 #include "runtime/app/session.h"
 #include "runtime/app/simd.h"
 #include "runtime/app/suite.h"
@@ -88,6 +88,43 @@ TEST_P(EveryNode, HasValidDefaults) {
   read_record(type().params, written, again.get(), reader);
   EXPECT_TRUE(problems.empty()) << to_text(problems);
   EXPECT_EQ(write_record(type().params, again.get()), written);
+}
+
+// The values of a knob as --set would give them: JSON, or text that stands for itself.
+Json knob_value(const std::string& text) {
+  Json value = Json::parse(text, nullptr, false);
+  return value.is_discarded() ? Json(text) : value;
+}
+
+TEST_P(EveryNode, HasKnobsWhoseValuesItTakes) {
+  for (const ParamField& f : type().params.fields) {
+    if (!f.knob) continue;
+    const std::string what = GetParam() + ":" + f.name;
+    expect_sentence(what + " knob", f.name, f.knob->basis);
+    EXPECT_GE(f.knob->values.size(), 2u) << what;
+    std::set<std::string> seen;
+    for (const std::string& text : f.knob->values) {
+      EXPECT_TRUE(seen.insert(text).second) << what << " names " << text << " twice";
+      Diagnostics problems;
+      ParamReader reader(problems, "/params", "");
+      const auto params = type().default_params();
+      read_record(type().params, Json{{f.name, knob_value(text)}}, params.get(), reader);
+      EXPECT_TRUE(problems.empty()) << what << "=" << text << "\n" << to_text(problems);
+      const Json kept = write_record(type().params, params.get())[f.name];
+      EXPECT_EQ(kept, knob_value(text)) << what << " is not kept as it was set";
+    }
+    if (!f.knob->slope) continue;
+    double last = 0;  // a slope needs numbers, and an order that gets better
+    for (const std::string& text : f.knob->values) {
+      ASSERT_TRUE(knob_value(text).is_number()) << what << ": only numbers have a slope";
+      const double v = knob_value(text).get<double>();
+      EXPECT_GT(v, 0) << what;
+      if (last != 0) {
+        EXPECT_EQ(*f.knob->slope<0, v> last) << what << ": " << text << " is not more exact";
+      }
+      last = v;
+    }
+  }
 }
 
 TEST_P(EveryNode, HasAnExampleThatUsesItAndTheFilesOfItsName) {
