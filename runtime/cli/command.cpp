@@ -97,6 +97,20 @@ void apply(const RunArguments& args, RunOptions& options) {
       throw WorldError("unsupported_simd", fmt::format("this processor has no {}", name));
 }
 
+std::vector<std::string> assignments(const std::string& text) {
+  std::vector<std::string> out{""};
+  int depth = 0;
+  for (const char c : text) {
+    depth += c == '[' || c == '{' ? 1 : c == ']' || c == '}' ? -1 : 0;
+    if (c == ',' && depth == 0)
+      out.emplace_back();
+    else
+      out.back() += c;
+  }
+  if (out.back().empty()) out.pop_back();
+  return out;
+}
+
 std::vector<int> integers(std::string_view option, std::string_view text, std::size_t count) {
   std::vector<int> out;
   const char* at = text.data();

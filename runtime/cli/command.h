@@ -31,6 +31,8 @@ void add_plan(CLI::App&, Invocation&);
 void add_inspect(CLI::App&, Invocation&);
 void add_nodes(CLI::App&, Invocation&);
 void add_diff(CLI::App&, Invocation&);
+void add_sweep(CLI::App&, Invocation&);
+void add_diverge(CLI::App&, Invocation&);
 void add_test(CLI::App&, Invocation&);
 void add_new(CLI::App&, Invocation&);
 void add_catalog(CLI::App&, Invocation&);
@@ -73,6 +75,8 @@ void add_run_arguments(CLI::App&, RunArguments&);
 // Throws UsageError. A --simd that the processor lacks is WorldError("unsupported_simd").
 void apply(const RunArguments&, RunOptions&);
 
+// "samples=64,lit:interpolation=phong" as its parts; commas inside brackets belong to a value.
+std::vector<std::string> assignments(const std::string& text);
 // "3,4" as two integers and the like; throws UsageError naming the option.
 std::vector<int> integers(std::string_view option, std::string_view text, std::size_t count);
 // "1-48" or "7"; throws UsageError.

@@ -72,6 +72,7 @@ class Tally {
         number(a, b, nan, place);
       else
         d_.ulps.add(0);
+      if (std::abs(y) > d_.largest && std::abs(y) < infinity) d_.largest = std::abs(y);
       ++numbers_;
     }
   }

@@ -50,7 +50,8 @@ struct Difference {
   double rmse = 0, max = 0;  // of the numbers; NaN where any is
   double mrse =
       0;  // mean of (a - b)^2 / (|b| + 0.01)^2: the mean relative squared error of pbrt-v4's imgtool
-  double psnr = 0;  // dB for a peak of 1; infinite where rmse is 0
+  double largest = 0;  // of the reference's numbers, without sign; finite ones only
+  double psnr = 0;     // dB for a peak of 1; infinite where rmse is 0
   UlpHistogram ulps;
   std::optional<WorstValue> worst;
 

@@ -1,0 +1,21 @@
+// What a sweep's numbers say: slopes, the Pareto front, the best buys.
+#pragma once
+
+#include "runtime/app/sweep/sweep.h"
+
+#include <span>
+#include <utility>
+
+namespace frustum {
+
+// Nothing with fewer than 3 pairs, or where all x are one. Pairs that are not positive and finite are left
+// out.
+std::optional<SlopeFit> fit_slope(std::span<const std::pair<double, double>> x_and_error);
+
+// Fills fits, steps and the points' pareto.
+void analyse(Sweep&);
+
+// A setting as a number: JSON numbers; nothing for the rest.
+std::optional<double> number_of_setting(const std::string& value);
+
+}  // namespace frustum

@@ -1,0 +1,33 @@
+// What a sweep has finished so far, one JSON object a line, so that a cut-off sweep goes on where it stopped.
+#pragma once
+
+#include "runtime/core/diagnostic.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace frustum {
+
+class SweepJournal {
+ public:
+  // Opens `file`. With `resume` and a file of the same sweep, its entries are read, and a last line that was
+  // cut off is dropped; otherwise the file begins anew. Throws NodeError("other_sweep") where `resume` meets
+  // another sweep, WorldError("cannot_write_file").
+  SweepJournal(std::filesystem::path file, const std::string& sweep, bool resume);
+  ~SweepJournal();
+  SweepJournal(const SweepJournal&) = delete;
+  SweepJournal& operator=(const SweepJournal&) = delete;
+
+  const std::vector<Json>& entries() const { return entries_; }
+
+  // One line in one write, on the disk when it returns.
+  void append(const Json& entry);
+
+ private:
+  std::filesystem::path file_;
+  std::vector<Json> entries_;
+  int descriptor_ = -1;
+};
+
+}  // namespace frustum

@@ -1,0 +1,156 @@
+#include "runtime/app/sweep/report.h"
+
+#include "runtime/app/export.h"
+#include "runtime/app/files.h"
+#include "runtime/app/metrics/metrics.h"
+#include "runtime/app/sweep/analysis.h"
+#include "runtime/app/text.h"
+#include "runtime/buffers/numbers.h"
+#include "runtime/core/version.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace frustum {
+namespace {
+
+double milliseconds(std::chrono::nanoseconds t) {
+  return std::chrono::duration<double, std::milli>(t).count();
+}
+
+Json fit_json(const std::optional<SlopeFit>& f) {
+  if (!f) return nullptr;
+  return {{"slope", f->slope}, {"intercept", f->intercept}, {"r2", f->r2}, {"points", f->points}};
+}
+
+Json point_json(const SweepPoint& p) {
+  Json errors = Json::object(), times = Json::array();
+  for (const auto& [metric, v] : p.errors) errors[metric] = json_number(v);
+  for (const auto t : p.times) times.push_back(milliseconds(t));
+  Json out = {{"key", p.key},
+              {"values", p.values},
+              {"errors", errors},
+              {"ms",
+               {{"min", milliseconds(min_of(p))},
+                {"median", milliseconds(median_of(p))},
+                {"mad", milliseconds(deviation_of(p))},
+                {"all", times}}},
+              {"work", p.work},
+              {"counters", p.counters},
+              {"pareto", p.pareto}};
+  if (p.knob) out["knob"] = *p.knob;
+  if (p.own_error) out["own_error"] = json_number(*p.own_error);
+  return out;
+}
+
+std::string fitted(const std::optional<SlopeFit>& f) {
+  return f ? fmt::format("{:+.2f} (r2 {:.3f}, {} points)", f->slope, f->r2, f->points) : std::string("-");
+}
+
+}  // namespace
+
+std::string name_of(const Sweep& s, const SweepPoint& p) {
+  if (p.knob)
+    return fmt::format("{}: {} -> {}", s.knobs[*p.knob].address, s.knobs[*p.knob].current, p.values[*p.knob]);
+  if (!s.options.grid) return "as it is";
+  std::string out;
+  for (std::size_t k = 0; k < p.values.size(); ++k)
+    out += fmt::format("{}{} {}", k == 0 ? "" : ", ", s.knobs[k].address, p.values[k]);
+  return out;
+}
+
+Json to_json(const Sweep& s) {
+  Json knobs = Json::array(), points = Json::array(), fits = Json::array(), steps = Json::array();
+  for (const SweepKnob& k : s.knobs) {
+    knobs.push_back(
+        {{"address", k.address}, {"values", k.values}, {"current", k.current}, {"basis", k.basis}});
+    if (k.slope) knobs.back()["expected_slope"] = *k.slope;
+  }
+  for (const SweepPoint& p : s.points) points.push_back(point_json(p));
+  for (const KnobFit& f : s.fits)
+    fits.push_back({{"knob", f.knob},
+                    {"over_value", fit_json(f.over_value)},
+                    {"over_time", fit_json(f.over_time)},
+                    {"over_work", fit_json(f.over_work)},
+                    {"without_effect", f.without_effect}});
+  for (const SweepStep& t : s.steps)
+    steps.push_back({{"point", t.point},
+                     {"ms", t.time_ms},
+                     {"error_ratio", json_number(t.error_ratio)},
+                     {"halvings_per_ms", json_number(t.halvings_per_ms)}});
+  return {{"format", "frustum.sweep/1"},
+          {"graph", s.options.graph},
+          {"title", s.title},
+          {"port", s.port},
+          {"kind", s.kind},
+          {"reference", s.reference},
+          {"metrics", s.options.metrics},
+          {"grid", s.options.grid},
+          {"repeats", s.options.repeats},
+          {"machine", s.machine},
+          {"version", fmt::format("{} ({})", version, build_id())},
+          {"seconds", s.total_s},
+          {"seconds_in_runs", s.runs_s},
+          {"resumed", s.resumed},
+          {"knobs", knobs},
+          {"points", points},
+          {"fits", fits},
+          {"steps", steps}};
+}
+
+std::string sweep_csv(const Sweep& s) {
+  Json columns = {"turned"}, rows = Json::array();
+  for (const SweepKnob& k : s.knobs) columns.push_back(k.address);
+  for (const std::string& m : s.options.metrics) columns.push_back(m);
+  for (const char* name : {"own_error", "min_ms", "median_ms", "mad_ms", "runs", "work", "pareto"})
+    columns.push_back(name);
+  for (const SweepPoint& p : s.points) {
+    Json row = {p.knob ? s.knobs[*p.knob].address : std::string()};
+    for (const std::string& v : p.values) row.push_back(v);
+    for (const std::string& m : s.options.metrics) row.push_back(json_number(p.error(m)));
+    row.push_back(p.own_error ? json_number(*p.own_error) : Json(nullptr));
+    for (const auto t : {min_of(p), median_of(p), deviation_of(p)}) row.push_back(milliseconds(t));
+    row.push_back(p.times.size()), row.push_back(p.work), row.push_back(p.pareto ? 1 : 0);
+    rows.push_back(std::move(row));
+  }
+  return csv_text({{"columns", columns}, {"rows", rows}});
+}
+
+std::string sweep_text(const Sweep& s, std::size_t steps) {
+  std::string out = fmt::format("{}, {} points, {} against {}\n", s.port, s.points.size(),
+                                s.options.metrics.front(), s.reference);
+  if (!s.fits.empty()) {
+    std::vector<std::vector<std::string>> rows{{"knob", "error ~ value^", "theory", "error ~ time^"}};
+    for (const KnobFit& f : s.fits) {
+      const SweepKnob& k = s.knobs[f.knob];
+      rows.push_back({k.address, f.without_effect ? "no effect here" : fitted(f.over_value),
+                      k.slope ? fmt::format("{:+.2f}", *k.slope) : "",
+                      f.without_effect ? "" : fitted(f.over_time)});
+    }
+    out += "\n" + aligned(rows);
+  }
+  if (!s.steps.empty()) {
+    std::vector<std::vector<std::string>> rows{{"best buys", "time", "error", "halvings/ms"}};
+    for (std::size_t i = 0; i < std::min(steps, s.steps.size()); ++i) {
+      const SweepStep& t = s.steps[i];
+      rows.push_back({name_of(s, s.points[t.point]), fmt::format("{:+.2f} ms", t.time_ms),
+                      fmt::format("x {:.3g}", t.error_ratio),
+                      std::isinf(t.halvings_per_ms) ? "free" : fmt::format("{:.3g}", t.halvings_per_ms)});
+    }
+    out += "\n" + aligned(rows);
+  }
+  return out + fmt::format("\n{:.1f} s, {:.1f} s of them in runs\n", s.total_s, s.runs_s);
+}
+
+std::vector<std::string> write_sweep(const Sweep& s) {
+  const std::filesystem::path folder = s.options.folder;
+  write_text(folder / "sweep.json", to_json(s).dump(1) + "\n");
+  write_text(folder / "sweep.csv", sweep_csv(s));
+  write_text(folder / "sweep.html", sweep_html(s));
+  return {(folder / "sweep.json").string(), (folder / "sweep.csv").string(),
+          (folder / "sweep.html").string()};
+}
+
+}  // namespace frustum
