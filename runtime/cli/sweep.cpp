@@ -1,4 +1,5 @@
 // frustum sweep GRAPH: what accuracy costs in time.
+#include "runtime/app/sweep/markdown.h"
 #include "runtime/app/sweep/report.h"
 #include "runtime/app/text.h"
 #include "runtime/cli/command.h"
@@ -15,7 +16,7 @@ namespace {
 struct Arguments {
   GraphArguments graph;
   SweepOptions options;
-  std::string reference;
+  std::string reference, markdown;
 };
 
 // A line that is written over, on a terminal only.
@@ -49,6 +50,10 @@ int sweep(Arguments args, bool json) {
   if (terminal) std::fputs("\r\x1b[K", stderr);
   if (!result) return fail(problems, json);
   const auto files = write_sweep(*result);
+  if (!args.markdown.empty() && !json) {
+    const std::filesystem::path target = args.markdown;
+    return print(sweep_markdown(*result, target.parent_path(), target.filename().string())), done;
+  }
   if (json) {
     Json out = to_json(*result);
     out["files"] = files;
@@ -94,6 +99,10 @@ void add_sweep(CLI::App& app, Invocation& chosen) {
       ->check(quiet(CLI::Range(0, 4096)))
       ->type_name("N");
   c.add_flag("--resume", o.resume, "Go on with a sweep that was cut off.");
+  c.add_option("--markdown", args->markdown,
+               "Prints a part of a page for docs/, whose pictures are written beside this path and begin "
+               "with its name.")
+      ->type_name("FOLDER/NAME");
   c.add_option("-o,--out", o.folder, "The folder for sweep.html, .json, .csv and the journal.")
       ->required()
       ->type_name("DIR");

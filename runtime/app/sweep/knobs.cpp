@@ -10,7 +10,11 @@
 namespace frustum {
 namespace {
 
-std::string shown(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+// As a person writes it: 1, not 1.0.
+std::string shown(const Json& value) {
+  if (value.is_number_float()) return fmt::format("{}", value.get<double>());
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
 
 // Every node whose output `want` depends on.
 std::vector<bool> upstream(const Graph& graph, PortRef want) {

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace frustum {
@@ -142,6 +143,38 @@ std::string sweep_text(const Sweep& s, std::size_t steps) {
     out += "\n" + aligned(rows);
   }
   return out + fmt::format("\n{:.1f} s, {:.1f} s of them in runs\n", s.total_s, s.runs_s);
+}
+
+Plot error_plot(const Sweep& s) {
+  const std::string& metric = s.options.metrics.front();
+  const auto plotted = [&](std::size_t i, bool ring) {
+    const SweepPoint& p = s.points[i];
+    const double time = milliseconds(median_of(p)), error = p.error(metric);
+    return PlotPoint{time, error,
+                     fmt::format("{}\n{} {:.3g}, {:.3g} ms (min {:.3g}, deviation {:.2g})", name_of(s, p),
+                                 metric, error, time, milliseconds(min_of(p)), milliseconds(deviation_of(p))),
+                     i, ring};
+  };
+  Plot plot;
+  plot.x_label = "time of a run, ms (median)";
+  plot.y_label = metric + " against the reference";
+  plot.title = "Error against time, both logarithmic";
+  for (std::size_t i = 0; i < s.points.size(); ++i)
+    if (s.points[i].pareto) plot.front.push_back(plotted(i, false));
+  std::sort(plot.front.begin(), plot.front.end(),
+            [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+  for (std::size_t k = 0; k < s.knobs.size() && !s.options.grid; ++k) {
+    PlotSeries series{s.knobs[k].address, k, {}};
+    for (const std::string& v : s.knobs[k].values)
+      for (std::size_t i = 0; i < s.points.size(); ++i)
+        if ((s.points[i].knob == k && s.points[i].values[k] == v) || (i == 0 && s.knobs[k].current == v))
+          series.points.push_back(plotted(i, false));
+    plot.series.push_back(std::move(series));
+  }
+  for (std::size_t i = 0; i < s.points.size(); ++i)
+    if (s.options.grid || i == 0)
+      plot.series.push_back({"", s.options.grid ? 0u : 7u, {plotted(i, !s.options.grid)}});
+  return plot;
 }
 
 std::vector<std::string> write_sweep(const Sweep& s) {
