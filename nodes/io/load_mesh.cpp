@@ -31,6 +31,22 @@ const MeshReader& reader_of(const FilePath& file) {
                                                 file.written, fmt::join(known, ", "), kind));
 }
 
+// What the mesh file names beside itself is part of what the result depends on.
+void depend_on_named_files(NodeType& type) {
+  type.params.files = [files = type.params.files](const void* params, const auto& visit) {
+    files(params, visit);
+    const FilePath& file = static_cast<const Params*>(params)->file;
+    for (const MeshReader& reader : mesh_readers()) {
+      if (reader.extension != extension_of(file.written) || reader.visit_files == nullptr) continue;
+      try {
+        const FileBytes bytes(file);
+        reader.visit_files(bytes.text(), file, visit);
+      } catch (const std::runtime_error&) {  // running the node says what is wrong
+      }
+    }
+  };
+}
+
 Outputs run(const Inputs&, const Params& p, Context& ctx) {
   if (p.file.empty()) throw NodeError("no_file", "no file is named");
   const MeshReader& reader = reader_of(p.file);
@@ -41,20 +57,22 @@ Outputs run(const Inputs&, const Params& p, Context& ctx) {
 }  // namespace
 
 NodeType nodes::io_load_mesh() {
-  NodeType type = node("io.load_mesh", run)
-                      .doc("Reads a triangle mesh from a glTF, OBJ, PLY or STL file.")
-                      .cite(
-                          "Wavefront, The Advanced Visualizer: Object Files (.obj), appendix B1; Turk 1994, "
-                          "The PLY Polygon "
-                          "File Format")
-                      .param("file", &Params::file,
-                             "A .gltf, .glb, .obj, .ply or .stl file; polygons become triangles, faces keep "
-                             "their materials.")
-                      .output("mesh", &Outputs::mesh,
-                              "The vertices of the file, of a glTF every instance in its place; normals that "
-                              "it lacks are made.",
-                              {.space = Space::object});
+  NodeType type =
+      node("io.load_mesh", run)
+          .doc("Reads a triangle mesh from a glTF, OBJ, PLY or STL file.")
+          .cite(
+              "Khronos, glTF 2.0, ISO/IEC 12113:2022; Wavefront, The Advanced Visualizer: Object Files "
+              "(.obj), "
+              "appendix B1; Turk 1994, The PLY Polygon File Format")
+          .param("file", &Params::file,
+                 "A .gltf, .glb, .obj, .ply or .stl file; polygons become triangles, faces keep their "
+                 "materials.")
+          .output(
+              "mesh", &Outputs::mesh,
+              "The vertices of the file, of a glTF every instance in its place; normals it lacks are made.",
+              {.space = Space::object});
   depend_on_files_beside(type);
+  depend_on_named_files(type);
   return type;
 }
 

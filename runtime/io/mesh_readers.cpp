@@ -1,6 +1,7 @@
 #include "runtime/io/mesh_readers.h"
 
 #include "runtime/io/gltf.h"
+#include "runtime/io/mtl.h"
 #include "runtime/io/obj.h"
 #include "runtime/io/ply.h"
 #include "runtime/io/stl.h"
@@ -13,7 +14,7 @@ namespace {
 constexpr std::array readers{
     MeshReader{"gltf", "glTF 2.0", read_gltf_mesh},
     MeshReader{"glb", "GLB", read_gltf_mesh},
-    MeshReader{"obj", "Wavefront OBJ", read_obj},
+    MeshReader{"obj", "Wavefront OBJ", read_obj, visit_obj_files},
     MeshReader{"ply", "PLY", read_ply},
     MeshReader{"stl", "STL", read_stl},
 };

@@ -5,6 +5,7 @@
 #include "runtime/core/context.h"
 #include "runtime/core/param.h"
 
+#include <functional>
 #include <span>
 #include <string_view>
 
@@ -17,6 +18,9 @@ struct MeshReader {
   std::string_view extension;  // without its dot, lower case
   std::string_view name;       // "Wavefront OBJ"
   Mesh (*read)(std::string_view bytes, const FilePath& file, Context& ctx);
+  // Calls `visit` for every other file that reading may open: a cache depends on what they hold. May be null.
+  void (*visit_files)(std::string_view bytes, const FilePath& file,
+                      const std::function<void(const FilePath&)>& visit) = nullptr;
 };
 
 // All of them, in the order in which messages list them.

@@ -1,7 +1,12 @@
 #include "runtime/io/obj.h"
 
+#include "nodes/kernels/transfer.h"
 #include "runtime/io/file_bytes.h"
+#include "runtime/io/mtl.h"
+#include "runtime/io/normals.h"
+#include "runtime/io/obj_faces.h"
 #include "runtime/io/obj_parse.h"
+#include "runtime/io/obj_vertices.h"
 #include "runtime/io/triangulate.h"
 
 #include <fmt/format.h>
@@ -10,7 +15,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -38,11 +42,12 @@ class Assembler {
     Mesh m;
     m.columns = {triangles(), gather()};
     m.columns.push_back(normal_column());
+    if (has_colors_) m.columns.push_back(color_column());
     if (const Ref<Column> uv = uv_column(); uv_missing_ < vertex_count())
       m.columns.push_back(uv);
     else
       uv_missing_ = 0;
-    add_materials(m);
+    add_names(m);
     report();
     return m;
   }
@@ -125,6 +130,9 @@ class Assembler {
 
   void flatten() {
     positions_.resize(total_.v), normals_.resize(total_.vn), uvs_.resize(total_.vt);
+    has_colors_ =
+        std::any_of(chunks_.begin(), chunks_.end(), [](const auto& c) { return !c.colors.empty(); });
+    if (has_colors_) colors_.assign(total_.v, Vec3{1});
     for_chunks([&](std::size_t i) {
       auto& c = chunks_[i];
       for (std::size_t k = 0; k < c.positions.size() / 3; ++k)
@@ -133,7 +141,9 @@ class Assembler {
         normals_[bases_[i].vn + k] = {c.normals[3 * k], c.normals[3 * k + 1], c.normals[3 * k + 2]};
       for (std::size_t k = 0; k < c.uvs.size() / 2; ++k)
         uvs_[bases_[i].vt + k] = {c.uvs[2 * k], c.uvs[2 * k + 1]};
-      c.positions = {}, c.normals = {}, c.uvs = {};
+      for (std::size_t k = 0; k < c.colors.size() / 3; ++k)
+        colors_[bases_[i].v + k] = {c.colors[3 * k], c.colors[3 * k + 1], c.colors[3 * k + 2]};
+      c.positions = {}, c.normals = {}, c.uvs = {}, c.colors = {};
     });
   }
 
@@ -161,55 +171,24 @@ class Assembler {
     for (const std::uint64_t n : fans) fans_ += n;
   }
 
-  // One vertex of the mesh at a position of the file, and the next one there.
-  struct Variant {
-    std::int32_t vt = absent, vn = absent;
-    std::uint32_t next = 0;  // in extra_, from 1; 0 ends the list
-  };
-
-  // Numbers the distinct (vt, vn) at each position; a corner's vt becomes that number. Serial: about 4 ns a
-  // corner.
+  // Numbers the distinct (vt, vn) at each position; a corner's vt becomes that number.
   void weld() {
-    first_.resize(total_.v);
-    first_vertex_.assign(total_.v + 1, 0);
+    vertices_ = obj::VertexSet(total_.v);
     for (auto& c : chunks_) {
       ctx_.poll();
-      for (Corner& k : c.corners) k.vt = variant_of(k);
+      for (Corner& k : c.corners) k.vt = vertices_.add(k);
     }
-    std::uint32_t vertices = 0;
-    for (std::uint32_t& n : first_vertex_) vertices += std::exchange(n, vertices);
+    vertices_.finish();
   }
 
-  std::int32_t variant_of(const Corner& k) {
-    const auto v = static_cast<std::size_t>(k.v);
-    std::uint32_t& count = first_vertex_[v];
-    if (count == 0) {
-      count = 1;
-      first_[v] = {k.vt, k.vn};
-      return 0;
-    }
-    std::int32_t number = 0;
-    Variant* at = &first_[v];
-    for (;; ++number) {
-      if (at->vt == k.vt && at->vn == k.vn) return number;
-      if (at->next == 0) break;
-      at = &extra_[at->next - 1];
-    }
-    at->next = static_cast<std::uint32_t>(extra_.size() + 1);
-    extra_.push_back({k.vt, k.vn});
-    return static_cast<std::int32_t>(count++);
-  }
-
-  std::size_t vertex_count() const { return first_vertex_.back(); }
+  std::size_t vertex_count() const { return vertices_.size(); }
 
   Ref<Column> triangles() {
     auto column = Column::make<glm::uvec3>("triangle", Domain::face, total_.triangles);
     const auto out = column->template values<glm::uvec3>();
     for_chunks([&](std::size_t i) {
       const auto& corners = chunks_[i].corners;
-      const auto vertex = [&](const Corner& k) {
-        return first_vertex_[static_cast<std::size_t>(k.v)] + static_cast<std::uint32_t>(k.vt);
-      };
+      const auto vertex = [&](const Corner& k) { return vertices_.vertex(k.v, k.vt); };
       for (std::size_t t = 0; 3 * t < corners.size(); ++t)
         out[bases_[i].triangles + t] = {vertex(corners[3 * t]), vertex(corners[3 * t + 1]),
                                         vertex(corners[3 * t + 2])};
@@ -217,24 +196,10 @@ class Assembler {
     return column;
   }
 
-  // Calls body(vertex, v, variant) for every vertex of the mesh, in parallel over positions.
-  template <class Body>
-  void for_vertices(Body&& body) const {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, total_.v, 1 << 14), [&](const auto& range) {
-      for (std::size_t v = range.begin(); v < range.end(); ++v) {
-        const Variant* at = &first_[v];
-        for (std::uint32_t i = first_vertex_[v]; i < first_vertex_[v + 1]; ++i) {
-          body(static_cast<std::size_t>(i), v, *at);
-          if (at->next != 0) at = &extra_[at->next - 1];
-        }
-      }
-    });
-  }
-
   Ref<Column> gather() {
     auto column = Column::make<Vec3>("position", Domain::vertex, vertex_count(), Space::object);
     const auto out = column->template values<Vec3>();
-    for_vertices([&](std::size_t i, std::size_t v, const Variant&) { out[i] = positions_[v]; });
+    vertices_.for_each([&](std::size_t i, std::size_t v, const obj::Variant&) { out[i] = positions_[v]; });
     return column;
   }
 
@@ -242,7 +207,7 @@ class Assembler {
     auto column = Column::make<Vec2>("uv", Domain::vertex, vertex_count());
     const auto out = column->template values<Vec2>();
     std::atomic<std::uint64_t> missing{0};
-    for_vertices([&](std::size_t i, std::size_t, const Variant& k) {
+    vertices_.for_each([&](std::size_t i, std::size_t, const obj::Variant& k) {
       if (k.vt == absent) ++missing;
       out[i] = k.vt == absent ? Vec2{0} : uvs_[static_cast<std::size_t>(k.vt)];
     });
@@ -250,21 +215,12 @@ class Assembler {
     return column;
   }
 
-  // The unit vector along n; nothing where it has no length. Scaled first, so that no square overflows or
-  // underflows.
-  static std::optional<glm::dvec3> unit(glm::dvec3 n) {
-    const double size = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
-    if (!(size > 0) || !std::isfinite(size)) return {};
-    n /= size;
-    return n / std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-  }
-
   Ref<Column> normal_column() {
     auto column = Column::make<Vec3>("normal", Domain::vertex, vertex_count());
     const auto out = column->template values<Vec3>();
     std::atomic<std::uint64_t> missing{0};
     const Vec3 none{0};
-    for_vertices([&](std::size_t i, std::size_t, const Variant& k) {
+    vertices_.for_each([&](std::size_t i, std::size_t, const obj::Variant& k) {
       const auto n =
           k.vn == absent ? std::nullopt : unit(glm::dvec3(normals_[static_cast<std::size_t>(k.vn)]));
       if (!n) ++missing;
@@ -272,55 +228,43 @@ class Assembler {
     });
     if ((normals_computed_ = missing) == 0) return column;
     const std::vector<glm::dvec3> sums = area_normals();
-    for_vertices([&](std::size_t i, std::size_t v, const Variant&) {
+    vertices_.for_each([&](std::size_t i, std::size_t v, const obj::Variant&) {
       if (out[i] == none) out[i] = Vec3(unit(sums[v]).value_or(glm::dvec3(0, 0, 1)));
     });
     return column;
   }
 
-  // Sums of the cross products of the faces around each position, in the order of the faces.
+  // Around each v of the file: a seam in texture coordinates makes no crease.
   std::vector<glm::dvec3> area_normals() const {
     std::vector<glm::dvec3> sums(total_.v, glm::dvec3(0));
-    for (const auto& c : chunks_) {
-      ctx_.poll();
-      for (std::size_t t = 0; t + 2 < c.corners.size(); t += 3) {
-        std::size_t v[3];
-        for (std::size_t k = 0; k < 3; ++k) v[k] = static_cast<std::size_t>(c.corners[t + k].v);
-        const glm::dvec3 a(positions_[v[0]]), u = glm::dvec3(positions_[v[1]]) - a,
-                                              w = glm::dvec3(positions_[v[2]]) - a;
-        const glm::dvec3 n{u.y * w.z - u.z * w.y, u.z * w.x - u.x * w.z, u.x * w.y - u.y * w.x};
-        for (const std::size_t k : v) sums[k] += n;
-      }
-    }
+    for (const auto& c : chunks_)
+      add_area_normals<Vec3>(
+          c.corners.size() / 3,
+          [&](std::size_t t, std::size_t k) { return static_cast<std::size_t>(c.corners[3 * t + k].v); },
+          positions_, sums, ctx_);
     return sums;
   }
 
-  void add_materials(Mesh& m) {
-    const bool any =
-        std::any_of(chunks_.begin(), chunks_.end(), [](const auto& c) { return !c.materials.empty(); });
-    if (!any) return;
-    auto set = std::make_shared<MaterialSet>();
-    std::map<std::string_view, std::uint32_t> numbers;
-    const auto number_of = [&](std::string_view name) {
-      const auto [it, fresh] = numbers.try_emplace(name, static_cast<std::uint32_t>(set->materials.size()));
-      if (fresh) set->materials.emplace_back().name = name;
-      return it->second;
-    };
-    auto column = Column::make<std::uint32_t>("material", Domain::face, total_.triangles);
-    const auto out = column->template values<std::uint32_t>();
-    std::string_view now;  // faces before the first usemtl have the material without a name
-    std::size_t at = 0;
-    for (const auto& c : chunks_) {
-      auto change = c.materials.begin();
-      for (std::size_t f = 0; f < c.sizes.size(); ++f) {
-        for (; change != c.materials.end() && change->first <= f; ++change) now = change->second;
-        const std::uint32_t number = number_of(now);
-        for (std::uint32_t k = 2; k < c.sizes[f]; ++k) out[at++] = number;
-      }
-      for (; change != c.materials.end(); ++change) now = change->second;
-    }
-    m.columns.push_back(std::move(column));
-    m.materials = std::move(set);
+  // sRGB, as the programs that write colours there do.
+  Ref<Column> color_column() {
+    auto column = Column::make<Vec3>("color", Domain::vertex, vertex_count());
+    const auto out = column->template values<Vec3>();
+    vertices_.for_each([&](std::size_t i, std::size_t v, const obj::Variant&) {
+      for (glm::length_t k = 0; k < 3; ++k)
+        out[i][k] = static_cast<R>(kernels::decode(kernels::Curve::srgb, static_cast<double>(colors_[v][k])));
+    });
+    return column;
+  }
+
+  void add_names(Mesh& m) {
+    obj::FaceNames names = obj::name_faces<R>(chunks_, total_.triangles);
+    if (names.group) m.columns.push_back(std::move(names.group));
+    if (!names.material) return;
+    m.columns.push_back(std::move(names.material));
+    std::vector<std::string_view> libraries;
+    for (const auto& c : chunks_) libraries.insert(libraries.end(), c.libraries.begin(), c.libraries.end());
+    m.materials = std::make_shared<MaterialSet>(
+        read_materials(libraries, file_, names.materials, m.find("uv") != nullptr, ctx_));
   }
 
   void report() {
@@ -329,8 +273,11 @@ class Assembler {
       for (const auto& [key, n] : c.other) other[key] += n;
     ctx_.count("triangles", total_.triangles);
     ctx_.count("vertices", vertex_count());
-    ctx_.count("groups", other["g"] + other["o"]);
-    for (const char* expected : {"g", "o", "s", "mtllib"}) other.erase(expected);
+    std::uint64_t groups = 0;
+    for (const auto& c : chunks_)
+      for (const obj::FaceChange& change : c.changes) groups += change.kind != obj::FaceChange::material;
+    ctx_.count("groups", groups);
+    other.erase("s");
     std::vector<std::string> skipped;
     for (const auto& [key, n] : other) skipped.push_back(fmt::format("{} x {}", n, key));
     const auto warn = [&](std::uint64_t n, const char* code, std::string_view what) {
@@ -351,16 +298,17 @@ class Assembler {
   std::vector<obj::Chunk<R>> chunks_;
   std::vector<Base> bases_;
   Base total_;
-  std::vector<Vec3> positions_, normals_;
+  std::vector<Vec3> positions_, normals_, colors_;
   std::vector<Vec2> uvs_;
-  std::vector<Variant> first_, extra_;
-  std::vector<std::uint32_t> first_vertex_;  // of each position, and one past the last
+  obj::VertexSet vertices_{0};
   std::uint64_t fans_ = 0, uv_missing_ = 0, normals_computed_ = 0;
+  bool has_colors_ = false;
 };
 
 }  // namespace
 
 Mesh read_obj(std::string_view text, const FilePath& file, Context& ctx) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   return ctx.real([&]<class R>() { return Assembler<R>(text, file, ctx).run(); });
 }
 

@@ -1,109 +1,17 @@
 #include "runtime/io/obj_parse.h"
 
+#include "runtime/io/obj_cursor.h"
+#include "runtime/io/printable.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <limits>
-#include <optional>
 
 namespace frustum::obj {
 namespace {
 
-bool blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
-
-// Reads tokens of one line after another; a '\' before a line end continues the line.
-class Cursor {
- public:
-  Cursor(std::string_view text) : begin_(text.data()), at_(begin_), end_(begin_ + text.size()) {}
-
-  bool done() const { return at_ == end_; }
-  bool line_done() const { return at_ == end_ || *at_ == '\n' || *at_ == '#'; }
-  std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
-
-  void skip_blanks() {
-    for (; at_ != end_; ++at_) {
-      if (blank(*at_)) continue;
-      if (*at_ != '\\') return;
-      const char* next = at_ + 1;
-      if (next != end_ && *next == '\r') ++next;
-      if (next == end_ || *next != '\n') return;
-      at_ = next;
-    }
-  }
-  void skip_line() {
-    while (at_ != end_) {
-      const auto* eol =
-          static_cast<const char*>(std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_)));
-      if (eol == nullptr) {
-        at_ = end_;
-        return;
-      }
-      const bool continued = continues(at_, eol);
-      at_ = eol + 1;
-      if (!continued) return;
-    }
-  }
-  static bool continues(const char* begin, const char* eol) {
-    if (eol != begin && eol[-1] == '\r') --eol;
-    return eol != begin && eol[-1] == '\\';
-  }
-  std::string_view word() {
-    const char* start = at_;
-    while (at_ != end_ && !blank(*at_) && *at_ != '\n') ++at_;
-    return {start, static_cast<std::size_t>(at_ - start)};
-  }
-  std::string_view rest_of_line() {
-    const char* start = at_;
-    while (at_ != end_ && *at_ != '\n') ++at_;
-    const char* stop = at_;
-    while (stop != start && blank(stop[-1])) --stop;
-    return {start, static_cast<std::size_t>(stop - start)};
-  }
-  bool take(char c) {
-    if (at_ == end_ || *at_ != c) return false;
-    ++at_;
-    return true;
-  }
-  // A number that ends at a blank or line end; nothing where there is none, or where it is not finite in R.
-  template <class R>
-  std::optional<R> number() {
-    skip_blanks();
-    if (at_ != end_ && *at_ == '+') ++at_;
-    R value{};
-    const auto [stop, error] = std::from_chars(at_, end_, value);
-    if (error == std::errc::result_out_of_range) {
-      // Below the smallest subnormal is zero, as in every other reader; above the largest number is no
-      // number.
-      const double wide = std::strtod(std::string(at_, stop).c_str(), nullptr);
-      if (!(std::abs(wide) < 1)) return {};
-      value = static_cast<R>(wide);
-    } else if (error != std::errc{} || !std::isfinite(value)) {
-      return {};
-    }
-    if (stop != end_ && !blank(*stop) && *stop != '\n' && *stop != '\\') return {};
-    at_ = stop;
-    return value;
-  }
-  // A whole number other than zero, of at most nine digits.
-  std::optional<std::int32_t> index() {
-    const bool negative = take('-');
-    const char* start = at_;
-    std::int32_t value = 0;
-    while (at_ != end_ && digit(*at_) && at_ - start < 10)
-      value = static_cast<std::int32_t>(value * 10L + (*at_++ - '0'));
-    if (at_ == start || at_ - start > 9 || value == 0) return {};
-    return negative ? -value : value;
-  }
-
- private:
-  const char *begin_, *at_, *end_;
-};
 
 template <class R>
 class Parser {
@@ -134,28 +42,48 @@ class Parser {
   void statement() {
     const std::string_view key = in_.word();
     if (key == "f") return face();
-    if (key == "v") return numbers(out_.positions, 3, 3);
+    if (key == "v") return vertex();
     if (key == "vn") return numbers(out_.normals, 3, 3);
     if (key == "vt") return numbers(out_.uvs, 1, 2);
-    if (key == "usemtl") {
+    if (key == "usemtl" || key == "g" || key == "o") {
       in_.skip_blanks();
-      out_.materials.emplace_back(out_.sizes.size(), in_.rest_of_line());
+      const auto kind = key == "g"   ? FaceChange::group
+                        : key == "o" ? FaceChange::object
+                                     : FaceChange::material;
+      out_.changes.push_back({kind, out_.sizes.size(), in_.rest_of_line()});
+      return;
+    }
+    if (key == "mtllib") {
+      in_.skip_blanks();
+      out_.libraries.push_back(in_.rest_of_line());
       return;
     }
     if (!std::all_of(key.begin(), key.end(), [](char c) { return letter(c) || digit(c); }))
-      return fail(fmt::format("'{:.{}}' is not a statement of an OBJ file", printable(key), 20));
+      return fail(fmt::format("'{}' is not a statement of an OBJ file", printable(key)));
     ++out_.other[key];
   }
 
-  static std::string printable(std::string_view s) {
-    std::string out(s.substr(0, 20));
-    for (char& c : out)
-      if (c < ' ' || c > '~') c = '?';
-    return out;
+  // v x y z, with a weight (not looked at) or red green blue after it.
+  void vertex() {
+    numbers(out_.positions, 3, 3);
+    R rest[4];
+    int n = 0;
+    for (; n < 4 && out_.error.empty() && !in_.line_done(); in_.skip_blanks()) {
+      const auto v = in_.template number<R>();
+      if (!v) break;
+      rest[n++] = *v;
+      in_.skip_blanks();
+    }
+    const std::size_t before = out_.positions.size() - 3;
+    if (n == 3) {
+      out_.colors.resize(before, R{1});  // of the vertices that had none
+      out_.colors.insert(out_.colors.end(), rest, rest + 3);
+    } else if (!out_.colors.empty()) {
+      out_.colors.resize(before + 3, R{1});
+    }
   }
 
-  // `least` numbers, up to `most` kept (zero where they are left out); more (a weight, a colour) are not
-  // looked at.
+  // `least` numbers, up to `most` kept (zero where they are left out); more are not looked at.
   void numbers(std::vector<R>& to, int least, int most) {
     for (int i = 0; i < most; ++i) {
       in_.skip_blanks();

@@ -19,6 +19,13 @@ struct Corner {
   std::int32_t v = absent, vt = absent, vn = absent;
 };
 
+// From this face of a chunk on, another usemtl, g or o.
+struct FaceChange {
+  enum Kind : std::uint8_t { material, group, object } kind;
+  std::size_t face;
+  std::string_view name;
+};
+
 // What some lines of a file say. R is float or double: each decimal is rounded once, to R.
 template <class R>
 struct Chunk {
@@ -29,8 +36,9 @@ struct Chunk {
   std::vector<std::uint32_t> sizes;   // corners of each face, at least 3
   std::vector<std::size_t>
       relative;  // 3 x corner + field: fields written as negative numbers, counted from this chunk's start
-  std::vector<std::pair<std::size_t, std::string_view>>
-      materials;                                    // from this face of the chunk on, this usemtl
+  std::vector<R> colors;            // r g b of each vertex, white where it has none; empty where none has
+  std::vector<FaceChange> changes;  // in order
+  std::vector<std::string_view> libraries;          // what mtllib names, a line each
   std::map<std::string_view, std::uint64_t> other;  // statements that say nothing about triangles, by keyword
   std::string error;                                // of the first line that is wrong, or empty
   std::size_t error_at = 0;                         // its byte in `text`

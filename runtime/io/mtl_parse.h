@@ -1,0 +1,36 @@
+// The text of an MTL file, statement by statement.
+#pragma once
+
+#include "runtime/core/param.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace frustum::mtl {
+
+// A material as its file says it.
+struct Written {
+  std::optional<glm::dvec3> kd, ka, ks, ke;
+  std::optional<double> ns;
+  int illum = 2;
+  std::string map_kd;
+  std::string map_place;  // file:line
+  bool clamp = false;
+  glm::dvec2 scale{1}, offset{0};
+};
+
+using Library = std::map<std::string, Written, std::less<>>;
+// Statements without a counterpart here, and how many.
+using Skipped = std::map<std::string, std::uint64_t>;
+
+// Adds the materials of a file to a library; the first definition of a name counts. Throws
+// NodeError("malformed_file") with file:line.
+void parse(std::string_view text, const FilePath& file, Library& library, Skipped& skipped);
+
+}  // namespace frustum::mtl
