@@ -3,6 +3,7 @@
 #include "runtime/app/files.h"
 #include "runtime/buffers/image.h"
 #include "runtime/core/error.h"
+#include "runtime/io/buffer_files.h"
 #include "runtime/io/image_files.h"
 #include "runtime/io/mesh_readers.h"
 
@@ -15,7 +16,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -27,21 +27,6 @@ void copy_sample(const Tile& from, const Tile& to, int plane, int sample) {
   const Rect& r = to.rect();
   for (int y = r.y0; y < r.y1; ++y)
     std::copy_n(from.row<T>(plane, sample, y), r.width(), to.row<T>(plane, 0, y));
-}
-
-std::string cell(const Json& value) {
-  if (value.is_null()) return "";
-  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::string csv_row(const Json& cells) {
-  std::string out;
-  for (const Json& c : cells) out += (&c == &cells.front() ? "" : ",") + cell(c);
-  return out + "\r\n";
 }
 
 // The records of RFC 4180 text: fields by commas, quotes doubled inside quotes.
@@ -111,12 +96,6 @@ void save_raster(const Raster& raster, const std::string& path) {
 
 Raster load_raster(const std::string& path) { return read_image(path, path).raster; }
 
-std::string csv_text(const Json& table) {
-  std::string out = csv_row(table.at("columns"));
-  for (const Json& row : table.at("rows")) out += csv_row(row);
-  return out;
-}
-
 Buffer load_buffer(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -149,17 +128,14 @@ Json csv_table(const std::string& path) {
   return out;
 }
 
-void save_buffer(const Buffer& buffer, const std::string& path, int sample) {
-  if (buffer.type().is_pixels())
-    return save_raster(one_sample(buffer.type().raster(buffer.data()), sample), path);
-  const Json table = buffer.type().table != nullptr
-                         ? buffer.type().table(buffer.data(), 0, std::numeric_limits<std::size_t>::max())
-                         : Json(nullptr);
-  if (table.is_null() || !path.ends_with(".csv"))
-    throw NodeError("cannot_save", table.is_null()
-                                       ? fmt::format("a {} has no file form", buffer.type().name)
-                                       : fmt::format("a {} is saved as .csv", buffer.type().name));
-  write_text(path, csv_text(table));
+void save_buffer(const Buffer& buffer, const std::string& path, int sample, const FileWarning& warn) {
+  const std::vector<std::string> forms = saved_as(buffer.type());
+  const bool whole = std::any_of(forms.begin(), forms.end(),
+                                 [&](const std::string& form) { return path.ends_with("." + form); });
+  if (buffer.type().is_pixels() && !whole)
+    save_raster(one_sample(buffer.type().raster(buffer.data()), sample), path);
+  else
+    save_buffer_file(buffer, {.path = path, .warn = warn});
 }
 
 }  // namespace frustum

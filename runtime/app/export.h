@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/core/buffer.h"
+#include "runtime/core/sink.h"
 
 #include <string>
 
@@ -22,16 +23,14 @@ Raster load_raster(const std::string& path);
 // WorldError where it cannot be read, NodeError where it is malformed.
 Buffer load_buffer(const std::string& path);
 
-// RFC 4180, with a line of column names, from the table form of a buffer; numbers in the shortest text
-// that reads back to the same value.
-std::string csv_text(const Json& table);
-
-// The table that csv_text() wrote, {"columns", "rows"}: cells that read as numbers are numbers, "nan" and the
-// like and the rest are texts. Throws NodeError("malformed_file") for a row of another length or an open quote.
+// The table of a .csv file (RFC 4180), {"columns", "rows"}: cells that read as numbers are numbers, "nan" and
+// the like and the rest are texts. Throws NodeError("malformed_file") for a row of another length or an open
+// quote.
 Json csv_table(const std::string& path);
 
-// Pixels (the given sample of each) to an image file, anything else that has a table form to a .csv. Throws
-// NodeError("cannot_save") where the buffer is neither.
-void save_buffer(const Buffer& buffer, const std::string& path, int sample);
+// Pixels (the given sample of each) to an image file, and any buffer to a file of its kind: a mesh to .ply,
+// .obj, .glb or .gltf, what has a table form to .csv, everything to .json. Throws NodeError("unknown_format")
+// where it is none of these.
+void save_buffer(const Buffer& buffer, const std::string& path, int sample, const FileWarning& warn = {});
 
 }  // namespace frustum

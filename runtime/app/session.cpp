@@ -2,6 +2,7 @@
 
 #include "nodes/all_nodes.h"
 #include "runtime/app/files.h"
+#include "runtime/io/buffer_files.h"
 #include "runtime/io/color.h"
 #include "runtime/io/image_files.h"
 
@@ -43,11 +44,13 @@ Session::Session() : registry_(all_node_types()) {}
 Loaded Session::load(const std::string& path, LoadOptions options) const {
   if (options.library_folders.empty()) options.library_folders = library_folders(path);
   if (!options.to_linear) options.to_linear = to_linear_rec709;
+  if (!options.saved_as) options.saved_as = saved_as;
   return load_graph(path, registry_, options);
 }
 
 RunResult Session::run(const Graph& graph, RunOptions options, bool keep) {
   if (!options.make_sink) options.make_sink = open_image_sink;
+  if (!options.save_buffer) options.save_buffer = save_buffer_file;
   options.cache = keep ? &cache_ : nullptr;
   return run_graph(graph, options);
 }

@@ -26,6 +26,10 @@ struct NumberOps {
     return health_of("number", values);
   }
   static Json summary(const Number& n) { return {{"value", json_number(n.value)}}; }
+  static Json table(const Number& n, std::size_t first, std::size_t count) {
+    return json_table({"value"}, 1, first, count,
+                      [&](std::size_t) { return Json::array({json_number(n.value)}); });
+  }
   static Buffer from_json(const Json& json, ParamReader& reader) {
     auto n = std::make_shared<Number>();
     return read_literal(json, n->value, reader) ? Buffer(Ref<Number>(std::move(n))) : Buffer();

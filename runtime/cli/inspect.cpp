@@ -180,7 +180,14 @@ int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Ar
     text = lines(out);
   }
   if (!args.save.empty()) {
-    save_buffer(buffer, args.save, args.sample);
+    Diagnostics warnings;
+    save_buffer(buffer, args.save, args.sample, [&](std::string_view code, const std::string& message) {
+      warnings.add({.code = std::string(code),
+                    .severity = Severity::warning,
+                    .pointer = "",
+                    .message = fmt::format("{}: {}", args.save, message)});
+    });
+    report(warnings);
     out["saved"] = args.save;
     text += args.save + "\n";
   }
@@ -230,7 +237,8 @@ void add_inspect(CLI::App& app, Invocation& chosen) {
   c.add_option("--first", args->first, "The first row of the table.")->type_name("ROW");
   c.add_option("--rows", args->rows, "Rows of the table.")->capture_default_str()->type_name("N");
   c.add_option("--save", args->save,
-               "Pixels to an image file (.exr keeps every plane), anything else to a .csv.")
+               "Pixels to an image file (.exr keeps every plane), a mesh to .ply, .obj or .glb, any buffer "
+               "to .csv or .json.")
       ->type_name("FILE");
   c.add_option("--sample", args->sample, "Which sample of each pixel --save writes.")
       ->capture_default_str()

@@ -79,6 +79,12 @@ std::string plan_text(const Graph& graph, const Plan& plan) {
   }
   std::string out = fmt::format("{} nodes run:\n{}", plan.nodes.size(), aligned(rows, 2));
   for (const PixelPass& pass : plan.passes) {
+    const bool saves = pass.outputs.size() == 1 && graph.outputs[pass.outputs.front()].whole;
+    if (saves) {
+      out +=
+          fmt::format("a whole buffer is saved as output '{}'\n", graph.outputs[pass.outputs.front()].name);
+      continue;
+    }
     out += fmt::format("one pass over tiles: {}\n", fmt::join(ids(graph, pass.nodes), " > "));
     for (const auto& root : pass.roots)
       out += fmt::format("  {} is held whole: {}\n", graph.name(root.port), name_of(root.why));

@@ -109,8 +109,11 @@ std::string read_text_file(const std::string& path) {
 }
 
 Documents::Documents(const Registry& registry, std::vector<std::string> library_folders,
-                     Diagnostics& problems)
-    : registry_(registry), library_folders_(std::move(library_folders)), problems_(problems) {
+                     Diagnostics& problems, SavedAs saved_as)
+    : registry_(registry),
+      library_folders_(std::move(library_folders)),
+      problems_(problems),
+      saved_as_(std::move(saved_as)) {
   const auto add = [this](const std::vector<Port>& ports) {
     for (const Port& port : ports)
       for (const BufferType* kind : port.types) kinds_.emplace(kind->name, kind);

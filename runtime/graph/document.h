@@ -3,6 +3,7 @@
 
 #include "runtime/core/context.h"
 #include "runtime/core/registry.h"
+#include "runtime/core/sink.h"
 #include "runtime/graph/source_text.h"
 
 #include <map>
@@ -68,6 +69,7 @@ struct DocumentOutput {
   std::vector<DocumentLayer> layers = {};
   bool layered = false;   // written as "layers": no port
   std::string file = {};  // empty: only a port
+  bool whole = false;     // the file holds a whole buffer and is no picture
   int bits = 0;
   std::string compression = {};
 };
@@ -106,7 +108,7 @@ using Kinds = std::map<std::string, const BufferType*, std::less<>>;
 // Opens graph files, each once, and those that they use as nodes.
 class Documents {
  public:
-  Documents(const Registry&, std::vector<std::string> library_folders, Diagnostics&);
+  Documents(const Registry&, std::vector<std::string> library_folders, Diagnostics&, SavedAs = {});
 
   // `path` names the text in messages and is what its relative files start from.
   std::shared_ptr<const Document> read(std::string text, const std::string& path);
@@ -117,6 +119,10 @@ class Documents {
   const Registry& registry() const { return registry_; }
   const Kinds& kinds() const { return kinds_; }
   Diagnostics& problems() { return problems_; }
+  // The extensions of files that a buffer of a kind can be saved as.
+  std::vector<std::string> saved_as(const BufferType& kind) const {
+    return saved_as_ ? saved_as_(kind) : std::vector<std::string>();
+  }
 
  private:
   std::string find_library(std::string_view name) const;
@@ -125,6 +131,7 @@ class Documents {
   const Registry& registry_;
   std::vector<std::string> library_folders_;
   Diagnostics& problems_;
+  SavedAs saved_as_;
   Kinds kinds_;
   std::map<std::string, std::shared_ptr<const Document>> opened_;  // by canonical path
   std::vector<std::pair<std::string, std::string>> opening_;       // canonical path and name, outermost first

@@ -1,4 +1,5 @@
 #include "runtime/graph/document_reader.h"
+#include "runtime/graph/output_format.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,34 +12,6 @@
 
 namespace frustum {
 namespace {
-
-// What a file of pixels can hold. Bits are a channel's; the first is the format's usual depth.
-struct FileFormat {
-  std::string_view extension;
-  std::vector<int> bits;
-  std::vector<std::string> compressions;
-  bool layers, quality = false;  // quality: its compression is "quality:N"
-};
-
-const std::vector<FileFormat>& file_formats() {
-  static const std::vector<std::string> tiff = {"none", "lzw", "zip", "packbits"};
-  static const std::vector<FileFormat> formats = {
-      {"exr", {16, 32}, {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}, true},
-      {"png", {8, 16}, {}, false},
-      {"tif", {16, 8, 32}, tiff, false},
-      {"tiff", {16, 8, 32}, tiff, false},
-      {"hdr", {32}, {}, false},
-      {"jpg", {8}, {}, false, true},
-      {"jpeg", {8}, {}, false, true}};
-  return formats;
-}
-
-std::string extension_of(const std::string& file) {
-  std::string out = std::filesystem::path(file).extension().string();
-  if (!out.empty()) out.erase(0, 1);
-  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return out;
-}
 
 // The first "{...}" in a file name that is not {frame}; empty where there is none.
 std::string unknown_placeholder(std::string_view file) {
@@ -166,56 +139,76 @@ bool DocumentReader::check_file_name(const DocumentOutput& output) {
 
 void DocumentReader::check_format(DocumentOutput& output, const Json& j) {
   const std::string extension = extension_of(output.file);
-  const auto& all = file_formats();
-  const auto format =
-      std::find_if(all.begin(), all.end(), [&](const FileFormat& f) { return f.extension == extension; });
-  if (format == all.end()) {
-    std::vector<std::string> names;
-    for (const FileFormat& f : all) names.emplace_back(f.extension);
-    problem({.code = "unknown_extension",
-             .pointer = child_pointer(output.pointer, "file"),
-             .message = extension.empty()
-                            ? fmt::format("'{}' has no extension that says its format", output.file)
-                            : fmt::format("'.{}' is not a picture format that can be written", extension),
-             .expected = fmt::format("one of: {}", fmt::join(names, ", ")),
-             .got = extension,
-             .suggestions = nearest_names(extension, names)});
-    return;
-  }
+  const PictureFormat* format = find_picture_format(extension);
+  if (format == nullptr && !check_buffer_format(output, extension)) return;
+  output.whole = format == nullptr;
+  static const PictureFormat buffer_format{{}, {}, {}, false};
+  if (output.whole) format = &buffer_format;
   if (!format->layers &&
       (output.layers.size() > 1 || (output.layers.size() == 1 && !output.layers[0].name.empty())))
     problem({.code = "one_layer_format",
              .pointer = child_pointer(output.pointer, "layers"),
-             .message = fmt::format("a .{} file holds the main layer \"\" only", extension),
-             .expected = "an .exr file, or one layer",
+             .message = fmt::format("a .{} file holds {} only", extension,
+                                    output.whole ? "one buffer" : "the main layer \"\""),
+             .expected = output.whole ? "\"from\" and one port" : "an .exr file, or one layer",
              .got = fmt::format("{} layers", output.layers.size())});
-  if (const auto bits = j.find("bits"); bits != j.end()) {
-    const std::string pointer = child_pointer(output.pointer, "bits"),
-                      expected = fmt::format("{}", fmt::join(format->bits, " or "));
-    if (!bits->is_number_integer())
-      wrong_type(pointer, expected, *bits);
-    else if (std::find(format->bits.begin(), format->bits.end(), *bits) == format->bits.end())
-      problem({.code = "out_of_range",
-               .pointer = pointer,
-               .message = fmt::format("a .{} file has {} bits a channel, not {}", extension, expected,
-                                      quoted_json(*bits)),
-               .expected = expected,
-               .got = quoted_json(*bits)});
-    else
-      output.bits = bits->get<int>();
+  check_bits(output, j, *format);
+  check_compression(output, j, *format);
+}
+
+// Whether any kind of buffer can be saved in a file of that extension; which one it is shows when links are
+// followed.
+bool DocumentReader::check_buffer_format(const DocumentOutput& output, const std::string& extension) {
+  std::vector<std::string> names;
+  for (const PictureFormat& f : picture_formats()) names.emplace_back(f.extension);
+  for (const auto& [name, kind] : documents_.kinds())
+    for (const std::string& e : documents_.saved_as(*kind))
+      if (std::find(names.begin(), names.end(), e) == names.end()) names.push_back(e);
+  if (std::find(names.begin(), names.end(), extension) != names.end()) return true;
+  problem({.code = "unknown_extension",
+           .pointer = child_pointer(output.pointer, "file"),
+           .message = extension.empty() ? fmt::format("'{}' has no extension that says its format", output.file)
+                                        : fmt::format("'.{}' is not a format that can be written", extension),
+           .expected = fmt::format("one of: {}", fmt::join(names, ", ")),
+           .got = extension,
+           .suggestions = nearest_names(extension, names)});
+  return false;
+}
+
+void DocumentReader::check_bits(DocumentOutput& output, const Json& j, const PictureFormat& format) {
+  const auto bits = j.find("bits");
+  if (bits == j.end()) return;
+  const std::string pointer = child_pointer(output.pointer, "bits"),
+                    expected = output.whole ? "no bits" : fmt::format("{}", fmt::join(format.bits, " or "));
+  if (!bits->is_number_integer()) return wrong_type(pointer, expected, *bits);
+  if (std::find(format.bits.begin(), format.bits.end(), *bits) != format.bits.end()) {
+    output.bits = bits->get<int>();
+    return;
   }
+  problem({.code = "out_of_range",
+           .pointer = pointer,
+           .message = output.whole
+                          ? fmt::format("a .{} file has no depth of channels", extension_of(output.file))
+                          : fmt::format("a .{} file has {} bits a channel, not {}", format.extension, expected,
+                                        quoted_json(*bits)),
+           .expected = expected,
+           .got = quoted_json(*bits)});
+}
+
+void DocumentReader::check_compression(DocumentOutput& output, const Json& j, const PictureFormat& format) {
   const Json* compression = text_at(j, "compression", output.pointer);
   if (compression == nullptr) return;
   output.compression = compression->get<std::string>();
-  const auto& known = format->compressions;
+  const auto& known = format.compressions;
   if (std::find(known.begin(), known.end(), output.compression) != known.end()) return;
-  if (format->quality && is_quality(output.compression)) return;
-  const std::string expected = format->quality ? "quality:1 to quality:100"
+  if (format.quality && is_quality(output.compression)) return;
+  const std::string expected = format.quality  ? "quality:1 to quality:100"
                                : known.empty() ? "no compression"
                                                : fmt::format("one of: {}", fmt::join(known, ", "));
   problem({.code = "unknown_choice",
            .pointer = child_pointer(output.pointer, "compression"),
-           .message = fmt::format("'{}' is not a compression of .{} files", output.compression, extension),
+           .message = fmt::format("'{}' is not a compression of .{} files", output.compression,
+                                  extension_of(output.file)),
            .expected = expected,
            .got = output.compression,
            .suggestions = nearest_names(output.compression, known)});

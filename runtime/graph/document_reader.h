@@ -10,6 +10,8 @@
 
 namespace frustum {
 
+struct PictureFormat;
+
 class DocumentReader {
  public:
   DocumentReader(Documents& documents, std::shared_ptr<const SourceText> text, std::string folder);
@@ -52,6 +54,9 @@ class DocumentReader {
   void read_file(DocumentOutput&, const Json&);
   bool check_file_name(const DocumentOutput&);  // false where it names no file
   void check_format(DocumentOutput&, const Json&);
+  bool check_buffer_format(const DocumentOutput&, const std::string& extension);
+  void check_bits(DocumentOutput&, const Json&, const PictureFormat&);
+  void check_compression(DocumentOutput&, const Json&, const PictureFormat&);
   void check_same_files();
 
   // ----- reports

@@ -47,6 +47,7 @@ struct OutputLayer {
 struct GraphOutput {
   std::string name;
   std::string file;         // relative to the output folder; may hold {frame}
+  bool whole = false;       // the file holds the whole buffer of its one layer and is no picture
   int bits = 0;             // 0: the format's usual depth
   std::string compression;  // empty: the format's usual one
   std::vector<OutputLayer> layers;

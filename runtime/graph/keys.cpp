@@ -22,12 +22,12 @@ void hash_file(const std::string& path, Hasher& h) {
   h.value(size);
 }
 
-Digest node_key(const Graph& graph, const GraphNode& node, const std::vector<Digest>& keys) {
+Digest node_key(const Graph& graph, const GraphNode& node, const std::vector<Digest>& keys, bool files) {
   const NodeType& type = *node.type;
   Hasher h;
   h.text(type.name).value(type.version).value(node.precision).value(graph.seed);
   h.text(write_record(type.params, node.params.get()).dump());
-  if (type.params.files) type.params.files(node.params.get(), [&](const FilePath& f) { hash_file(f.resolved, h); });
+  if (files && type.params.files) type.params.files(node.params.get(), [&](const FilePath& f) { hash_file(f.resolved, h); });
   for (const auto& sources : node.inputs) {
     h.value(sources.size());
     for (const Source& s : sources) {
@@ -38,13 +38,21 @@ Digest node_key(const Graph& graph, const GraphNode& node, const std::vector<Dig
   return h.done();
 }
 
-}  // namespace
-
-std::vector<Digest> node_keys(const Graph& graph) {
+std::vector<Digest> node_keys(const Graph& graph, bool files) {
   std::vector<Digest> keys;
   keys.reserve(graph.nodes.size());
-  for (const GraphNode& n : graph.nodes) keys.push_back(node_key(graph, n, keys));
+  for (const GraphNode& n : graph.nodes) keys.push_back(node_key(graph, n, keys, files));
   return keys;
+}
+
+}  // namespace
+
+std::vector<Digest> node_keys(const Graph& graph) { return node_keys(graph, true); }
+
+Digest graph_digest(const Graph& graph) {
+  Hasher h;
+  for (const Digest& key : node_keys(graph, false)) h.value(key);
+  return h.done();
 }
 
 Digest output_key(const Digest& node, std::size_t port) { return Hasher().value(node).value(port).done(); }

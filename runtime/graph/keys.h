@@ -12,6 +12,10 @@ namespace frustum {
 // of its inputs. Neither names of nodes, nor threads, nor tile sizes, nor regions enter. Reads every file that is named.
 std::vector<Digest> node_keys(const Graph&);
 
+// What the graph is: all of that except the content of files, which is not read. The same for the same graph however its text
+// is laid out, whatever its nodes are called.
+Digest graph_digest(const Graph&);
+
 // The key of one output, for a set of outputs that were computed together.
 Digest output_key(const Digest& node, std::size_t port);
 

@@ -1,8 +1,10 @@
 #include "runtime/graph/load.h"
 
 #include "runtime/graph/check.h"
+#include "runtime/graph/output_format.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -78,6 +80,7 @@ class Builder {
   void add_output(const DocumentOutput& output) {
     GraphOutput out{.name = output.name,
                     .file = output.file,
+                    .whole = output.whole,
                     .bits = output.bits,
                     .compression = output.compression,
                     .layers = {},
@@ -106,15 +109,27 @@ class Builder {
               .message = why_left_out(edge, missing),
               .expected = "the optional input",
               .got = "nothing"});
-    } else if (!output.file.empty() && facts.kind != nullptr && !facts.kind->is_pixels()) {
-      report(problems_, *doc_.text,
-             {.code = "wrong_type",
-              .pointer = edge.link->pointer,
-              .message = fmt::format("{} ({}) cannot be written to '{}': files hold pixels",
-                                     name_of(flat_, edge), facts.kind->name, output.file),
-              .expected = "a port of pixels",
-              .got = std::string(facts.kind->name)});
+    } else if (!output.file.empty() && facts.kind != nullptr) {
+      check_kind(output, edge, *facts.kind);
     }
+  }
+
+  void check_kind(const DocumentOutput& output, const Edge& edge, const BufferType& kind) {
+    const std::vector<std::string> forms = options_.saved_as ? options_.saved_as(kind) : std::vector<std::string>();
+    const bool saved =
+        std::find(forms.begin(), forms.end(), extension_of(output.file)) != forms.end();
+    if (output.whole ? saved : kind.is_pixels()) return;
+    report(problems_, *doc_.text,
+           {.code = "wrong_type",
+            .pointer = edge.link->pointer,
+            .message = fmt::format("{} ({}) cannot be written to '{}': {}", name_of(flat_, edge), kind.name,
+                                   output.file,
+                                   output.whole ? "such a file holds another kind of buffer" : "pictures hold pixels"),
+            .expected = output.whole     ? fmt::format("a file for a {}: {}", kind.name, fmt::join(forms, ", "))
+                        : forms.empty() ? "a port of pixels"
+                                        : fmt::format("a port of pixels, or a file for a {}: {}", kind.name,
+                                                      fmt::join(forms, ", ")),
+            .got = std::string(kind.name)});
   }
 
   // "draw.image" for every port of every graph used as a node, and "draw" for its first.
@@ -216,7 +231,7 @@ void tidy(Diagnostics& problems, const std::string& top) {
 Loaded load_graph_text(const std::string& text, const std::string& path, const Registry& registry,
                        const LoadOptions& options) {
   Loaded loaded;
-  Documents documents(registry, options.library_folders, loaded.problems);
+  Documents documents(registry, options.library_folders, loaded.problems, options.saved_as);
   if (const auto doc = documents.read(text, path)) {
     Flat flat = flatten(*doc, options, loaded.problems);
     const Checked checked = check(flat, loaded.problems);

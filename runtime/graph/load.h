@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/core/param.h"
+#include "runtime/core/sink.h"
 #include "runtime/graph/graph.h"
 
 #include <optional>
@@ -23,6 +24,7 @@ struct LoadOptions {
   std::optional<Precision> precision = {};        // above the graph's own
   std::vector<std::string> library_folders = {};  // where "lib:name" looks for name.json, in order
   ParamReader::ToLinear to_linear = {};           // colours written in a named space
+  SavedAs saved_as = {};                          // which outputs are no pictures; empty: none
   std::optional<int> frame = {};                  // sets the graph parameter "frame", where it has one
 };
 

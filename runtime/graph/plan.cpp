@@ -65,7 +65,10 @@ class Planner {
       make_whole(p, Whole::demanded);
     }
     for (const std::size_t o : demand_.outputs)
-      for (const OutputLayer& layer : graph_.outputs[o].layers) want(layer.from, graph_.outputs[o].name);
+      for (const OutputLayer& layer : graph_.outputs[o].layers) {
+        want(layer.from, graph_.outputs[o].name);
+        if (graph_.outputs[o].whole) make_whole(layer.from, Whole::read_whole);
+      }
   }
 
   // Feeders stand before their consumers, so one walk from the end reaches everything.

@@ -16,7 +16,8 @@ struct RunOptions {
   Demand demand = {};
   std::optional<Rect> region = {};         // of every pixel root; same bytes as that part of the whole
   std::string out_folder = "out";
-  MakeSink make_sink = {};                      // required where demand.outputs is not empty
+  MakeSink make_sink = {};                 // required where demand.outputs has pictures
+  SaveBuffer save_buffer = {};             // required where it has other files
   int threads = 0;                         // 0: all processors
   int tile_edge = 0;                       // 0: chosen so that live planes stay within 1 MB; -1: one tile, the whole frame
   bool fuse = true;

@@ -11,6 +11,26 @@
 namespace frustum {
 namespace {
 
+void warn_of_output(RunState& state, const GraphOutput& output, std::string code, std::string message) {
+  state.problem({.code = std::move(code),
+                 .severity = Severity::warning,
+                 .pointer = output.place.pointer,
+                 .message = std::move(message),
+                 .file = output.place.file,
+                 .line = output.place.line,
+                 .column = output.place.column},
+                output.layers.front().from.node);
+}
+
+// A buffer goes to its file whole.
+void save_output(RunState& state, const GraphOutput& output) {
+  SaveRequest request{.path = output_path(output, state.options), .metadata = state.metadata()};
+  request.warn = [&](std::string_view code, const std::string& message) {
+    warn_of_output(state, output, std::string(code), fmt::format("output '{}': {}", output.name, message));
+  };
+  state.options.save_buffer(state.buffer(output.layers.front().from), request);
+}
+
 // One pass being run: the operations, what is read from memory, and who wants the pixels.
 class Pass {
  public:
@@ -167,24 +187,20 @@ class Pass {
         request.display_window = hull(request.display_window, f.window);
         request.layers.push_back({output.layers[l].name, sink_frame(f, {})});
         if (f.samples() > 1 && f.find("R"))
-          state_.problem({.code = "sampled_output",
-                          .severity = Severity::warning,
-                          .pointer = output.place.pointer,
-                          .message = fmt::format("{} has {} samples a pixel; the file gets the most central one: "
-                                                 "supersample.resolve would filter them",
-                                                 graph_.name(output.layers[l].from), f.samples()),
-                          .file = output.place.file,
-                          .line = output.place.line,
-                          .column = output.place.column},
-                         output.layers[l].from.node);
+          warn_of_output(state_, output, "sampled_output",
+                         fmt::format("{} has {} samples a pixel; the file gets the most central one: "
+                                     "supersample.resolve would filter them",
+                                     graph_.name(output.layers[l].from), f.samples()));
       }
       request.region = cut_to_region(request.display_window);
       for (SinkLayer& l : request.layers) l.frame.window = request.region;
       request.path = output_path(output, state_.options);
       request.bits = output.bits;
       request.compression = output.compression;
-      request.metadata.emplace_back("Software", "frustum");
-      if (!graph_.title.empty()) request.metadata.emplace_back("ImageDescription", graph_.title);
+      request.metadata = state_.metadata();
+      request.warn = [this, &output](std::string_view code, const std::string& message) {
+        warn_of_output(state_, output, std::string(code), message);
+      };
       if (request.region.empty())
         throw NodeError("empty_region", fmt::format("output '{}' has no pixels in the region", output.name));
       sinks_.push_back(state_.options.make_sink(request));
@@ -294,6 +310,12 @@ class Pass {
 
 }  // namespace
 
-void run_pass(RunState& state, std::size_t pass) { Pass(state, state.plan.passes[pass]).run(); }
+// An output that is no picture shares no pixel nodes with another, and so is alone in its pass.
+void run_pass(RunState& state, std::size_t pass) {
+  const PixelPass& p = state.plan.passes[pass];
+  if (p.outputs.size() == 1 && state.graph.outputs[p.outputs.front()].whole)
+    return save_output(state, state.graph.outputs[p.outputs.front()]);
+  Pass(state, p).run();
+}
 
 }  // namespace frustum

@@ -1,5 +1,8 @@
 #include "runtime/graph/run_state.h"
 
+#include "runtime/core/version.h"
+#include "runtime/graph/keys.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -63,6 +66,13 @@ void RunState::problem(Diagnostic d, std::size_t order) {
 void RunState::culprit(Culprit c, std::size_t order) {
   const std::lock_guard lock(mutex_);
   culprits_.emplace_back(order, std::move(c));
+}
+
+std::vector<std::pair<std::string, std::string>> RunState::metadata() const {
+  std::vector<std::pair<std::string, std::string>> out{{"Software", fmt::format("frustum {}", version)}};
+  if (!graph.title.empty()) out.emplace_back("ImageDescription", graph.title);
+  out.emplace_back("frustum:graph", to_hex(graph_digest(graph)));
+  return out;
 }
 
 void RunState::check_memory(std::uint64_t further) const {

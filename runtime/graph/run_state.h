@@ -43,6 +43,9 @@ class RunState {
   // ----- reports, from any thread
   void problem(Diagnostic d, std::size_t order);
   void culprit(Culprit c, std::size_t order);
+  // What every file of this run says of where it comes from: program and version, title and digest of the graph.
+  std::vector<std::pair<std::string, std::string>> metadata() const;
+
   void check_memory(std::uint64_t further) const;  // throws NodeError("memory") over the limit
 
   template <class F>

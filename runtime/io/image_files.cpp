@@ -1,6 +1,7 @@
 #include "runtime/io/image_files.h"
 
 #include "runtime/core/error.h"
+#include "runtime/io/color_spaces.h"
 #include "runtime/io/image_module.h"
 
 #include <dlfcn.h>
@@ -32,6 +33,21 @@ const ImageModule& image_module() {
   return loaded;
 }
 
+// Programs show the numbers of these formats as they are, so linear light looks too dark.
+void warn_of_linear_colors(const SinkRequest& request, const SinkPlan& plan) {
+  if (!request.warn || (plan.format != "png" && plan.format != "jpeg")) return;
+  const std::string& name = request.layers[0].frame.color_space;
+  const ColorSpace* space = find_embedded(name);
+  const bool linear = space != nullptr ? !space->data && space->curve == kernels::Curve::linear
+                                       : name.starts_with("lin_") || name.starts_with("Linear ");
+  if (linear)
+    request.warn(
+        "display_format_linear",
+        fmt::format("{} gets linear colours ({}), which look too dark in a .{} file: color.convert to "
+                    "srgb goes before it",
+                    request.path, name, plan.format == "png" ? "png" : "jpg"));
+}
+
 }  // namespace
 
 ImageFile read_image(const std::string& path, std::string_view name, int subimage) {
@@ -44,6 +60,7 @@ ImageFile read_image_bytes(std::string_view bytes, std::string_view name) {
 
 std::unique_ptr<Sink> open_image_sink(const SinkRequest& request) {
   const SinkPlan plan = plan_sink(request);
+  warn_of_linear_colors(request, plan);
   return image_module().open(request, plan);
 }
 

@@ -45,8 +45,8 @@ void add_area_normals(std::size_t count, Corner&& corner, std::span<const Vec3> 
 }
 
 // Makes every normal of a vertex column unit length. Those that have none become the sum of the area normals
-// of the faces around, or 0 0 1 where that has no length either; returns how many. Cost: 20 ns a triangle where
-// there are any, in one thread.
+// of the faces around, or 0 0 1 where that has no length either; returns how many. Cost: 20 ns a triangle
+// where there are any, in one thread.
 template <class R>
 std::uint64_t finish_vertex_normals(Column& normals, std::span<const glm::uvec3> triangles,
                                     std::span<const glm::vec<3, R>> positions, const Context& ctx);

@@ -15,15 +15,17 @@ namespace frustum {
 //   x y z                                                  position, object space; must be there and finite
 //   nx ny nz                                               normal, made unit length
 //   u v, s t, texture_u texture_v or texture_s texture_t   uv; v goes up, as in OBJ
-//   red green blue [alpha], also diffuse_red ...           color: whole numbers are sRGB (0 to 255 or 65535), as
-//                                                          the pictures and scanners are that they come from, and
-//                                                          are decoded to linear Rec.709; real ones are taken as
-//                                                          linear. The format itself says nothing. Alpha is linear.
-//   any other number                                       a column of its name (with "ply_" before it where the
-//                                                          name has a meaning here): f32, f64, i32 or u32
+//   red green blue [alpha], also diffuse_red ...           color: whole numbers are sRGB (0 to 255 or 65535),
+//                                                          as the pictures and scanners are that they come
+//                                                          from, and are decoded to linear Rec.709; real ones
+//                                                          are taken as linear. The format itself says
+//                                                          nothing. Alpha is linear.
+//   any other number                                       a column of its name (with "ply_" before it where
+//                                                          the name has a meaning here): f32, f64, i32 or u32
 //   element "face"
-//   vertex_indices or vertex_index                         triangle; polygons are cut (runtime/io/triangulate.h),
-//                                                          fewer than 3 corners are left out and counted
+//   vertex_indices or vertex_index                         triangle; polygons are cut
+//                                                          (runtime/io/triangulate.h), fewer than 3 corners
+//                                                          are left out and counted
 //   texcoord (a list of u v for every corner)              uv of corners
 //   any other number                                       a face column, as above
 //   element "tristrips": vertex_indices                    triangle; -1 begins a new strip

@@ -203,6 +203,61 @@ TEST(ImageFiles, AnUnfinishedFileLeavesNothingAndKeepsTheOldOne) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
+// libpng and its kind have things to say of files that end too early, on stderr.
+TEST(ImageFiles, AnUnfinishedFileEndsWithoutAWord) {
+  const Raster small = ramp({0, 0, 16, 16}, rgb), large = ramp({0, 0, 1500, 400}, rgb);
+  for (const std::string name : {"a.png", "a.exr", "a.tif", "a.hdr", "a.jpg"})
+    for (const Raster& picture : {small, large})
+      for (const int rows : {0, 4, picture.frame().window.height()}) {
+        const test::TempFolder folder;
+        testing::internal::CaptureStderr();
+        {
+          const auto sink = open_image_sink(request(folder.file(name), {{"", picture}}));
+          const Tile band = picture.view({0, 0, picture.frame().window.width(), rows});
+          if (rows != 0) sink->write({&band, 1});
+        }
+        EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << name << " " << rows;
+        EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+      }
+}
+
+TEST(ImageFiles, SayWhereTheyComeFrom) {
+  const Raster picture = ramp({0, 0, 8, 8}, rgb);
+  for (const std::string name : {"a.png", "a.exr", "a.tif"}) {
+    const test::TempFolder folder;
+    SinkRequest r = request(folder.file(name), {{"", picture}});
+    r.metadata = {{"Software", "frustum 1.2.3"},
+                  {"ImageDescription", "a title"},
+                  {"frustum:graph", "0123456789abcdef"}};
+    write(r, {{"", picture}});
+    std::string all;
+    for (const auto& [key, value] : read_image(folder.file(name), name).metadata)
+      all += key + "=" + value + "\n";
+    EXPECT_THAT(all, HasSubstr("Software=frustum 1.2.3\n")) << name;
+    EXPECT_THAT(all, HasSubstr("ImageDescription=a title\n")) << name;
+    EXPECT_THAT(all, HasSubstr("0123456789abcdef\n")) << name;
+  }
+}
+
+TEST(ImageFiles, LinearColoursInADisplayFormatAreSaid) {
+  const auto warned = [](const std::string& name, const std::string& space) {
+    const test::TempFolder folder;
+    const Raster picture = ramp({0, 0, 4, 4}, rgb, Alpha::none, space);
+    SinkRequest r = request(folder.file(name), {{"", picture}});
+    std::string code;
+    r.warn = [&](std::string_view c, const std::string&) { code = c; };
+    write(r, {{"", picture}});
+    return code;
+  };
+  for (const char* linear : {"lin_rec709", "lin_ap1", "lin_unheard_of"}) {
+    EXPECT_EQ(warned("a.png", linear), "display_format_linear") << linear;
+    EXPECT_EQ(warned("a.jpg", linear), "display_format_linear") << linear;
+    EXPECT_EQ(warned("a.exr", linear), "");
+    EXPECT_EQ(warned("a.tif", linear), "");
+  }
+  for (const char* other : {"srgb", "rec709", "raw", ""}) EXPECT_EQ(warned("a.png", other), "") << other;
+}
+
 template <class Error>
 std::pair<std::string, std::string> error_of(const std::function<void()>& body) {
   try {
@@ -222,6 +277,7 @@ TEST(ImageFiles, AFullDiskIsSaidAndLeavesNothing) {
     const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
     const rlimit small{1000, old.rlim_max};
     setrlimit(RLIMIT_FSIZE, &small);
+    testing::internal::CaptureStderr();
     const auto [code, message] = error_of<WorldError>([&] {
       SinkRequest r = request(folder.file(name), {{"", picture}});
       if (name == "a.exr") r.compression = "none";
@@ -229,6 +285,7 @@ TEST(ImageFiles, AFullDiskIsSaidAndLeavesNothing) {
     });
     setrlimit(RLIMIT_FSIZE, &old);
     std::signal(SIGXFSZ, old_handler);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << name;
     EXPECT_EQ(code, "cannot_write_file") << name;
     EXPECT_THAT(message, HasSubstr("File too large")) << name;
     EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << name;

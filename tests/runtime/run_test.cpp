@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
 #include <mutex>
+#include <optional>
 
 namespace frustum::test {
 namespace {
@@ -115,6 +117,60 @@ TEST(Run, StreamsBandsInOrderToASinkWithTheBytesOfTheWhole) {
     EXPECT_EQ(r.files, std::vector<std::string>{"out/sum.exr"});
     EXPECT_TRUE(edge != 16 || log.bands > 1);
   }
+}
+
+TEST(Run, SavesWholeBuffersBesidePictures) {
+  GraphMaker g = diamond();
+  g.output("picture", "sum", "sum.exr").output("statistics", "sum", "sum.json").output("factor", "factor", "n.csv");
+  g.graph.outputs[1].whole = g.graph.outputs[2].whole = true;
+  for (const std::optional<Rect> region : {std::optional<Rect>(), std::optional<Rect>({10, 10, 40, 20})})
+    for (const bool fuse : {true, false}) {
+      Recorder::Log log;
+      std::map<std::string, Buffer> saved;
+      std::mutex mutex;
+      RunOptions o{.demand = {.outputs = {0, 1, 2}}, .region = region, .fuse = fuse};
+      o.make_sink = [&](const SinkRequest& r) {
+        log.request = r;
+        return std::make_unique<Recorder>(log);
+      };
+      o.save_buffer = [&](const Buffer& b, const SaveRequest& r) {
+        const std::lock_guard lock(mutex);
+        saved[r.path] = b;
+        if (r.path == "out/n.csv") r.warn("left_out", "a digit");
+        EXPECT_EQ(r.metadata, log.request.metadata.empty() ? r.metadata : log.request.metadata);
+      };
+      const RunResult r = run_graph(g.graph, o);
+      ASSERT_EQ(r.end, RunResult::End::done) << to_text(r.problems);
+      EXPECT_TRUE(log.finished);
+      ASSERT_EQ(saved.size(), 2u);
+      EXPECT_EQ(bytes_of(saved.at("out/sum.json")), run_bytes(g, "sum"));
+      EXPECT_EQ(saved.at("out/n.csv").type().name, "number");
+      EXPECT_EQ(r.files, (std::vector<std::string>{"out/sum.exr", "out/sum.json", "out/n.csv"}));
+      ASSERT_EQ(r.problems.size(), 1u);
+      EXPECT_EQ(r.problems.list()[0].message, "output 'factor': a digit");
+    }
+}
+
+TEST(Run, FilesNameTheGraphThatMadeThem) {
+  const auto metadata = [](const GraphMaker& maker) {
+    GraphMaker g = maker;
+    g.graph.title = "a title";
+    g.output("n", "factor", "n.json");
+    g.graph.outputs[0].whole = true;
+    std::vector<std::pair<std::string, std::string>> out;
+    RunOptions o{.demand = {.outputs = {0}}};
+    o.save_buffer = [&](const Buffer&, const SaveRequest& r) { out = r.metadata; };
+    run_graph(g.graph, o);
+    return out;
+  };
+  const auto first = metadata(diamond());
+  ASSERT_EQ(first.size(), 3u);
+  EXPECT_THAT(first[0].second, testing::StartsWith("frustum "));
+  EXPECT_EQ(first[1].second, "a title");
+  EXPECT_EQ(first[2].first, "frustum:graph");
+  EXPECT_EQ(first[2].second.size(), 32u);
+  EXPECT_EQ(metadata(diamond()), first);
+  EXPECT_NE(metadata(diamond(1, 3)), first) << "another radius is another graph";
 }
 
 TEST(Run, ARegionHasTheBytesOfThatPartOfTheWhole) {

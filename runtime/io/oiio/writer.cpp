@@ -1,7 +1,7 @@
 #include "runtime/io/oiio/writer.h"
 
 #include "runtime/core/error.h"
-#include "runtime/io/oiio/partial_file.h"
+#include "runtime/core/partial_file.h"
 #include "runtime/io/primaries.h"
 
 #include <Imath/half.h>
@@ -112,7 +112,13 @@ lib::ImageSpec make_spec(const SinkRequest& r, const SinkPlan& plan) {
     spec.attribute("oiio:UnassociatedAlpha", 1);
   describe_color(main, plan, spec);
   spec.attribute("DateTime", "");  // else the library writes the time of day, and equal pictures differ
-  for (const auto& [key, value] : r.metadata) spec.attribute(key, value);
+  for (const auto& [key, value] : r.metadata) {
+    // TIFF has no names of one's own.
+    if (plan.format == "tiff" && key.starts_with("frustum:"))
+      spec.attribute("DocumentName", key + " " + value);
+    else
+      spec.attribute(key, value);
+  }
   return spec;
 }
 
@@ -127,7 +133,11 @@ class Stream : public lib::Filesystem::IOProxy {
   bool seek(std::int64_t offset) override { return file_.seek(offset); }
   std::size_t size() const override { return static_cast<std::size_t>(file_.size()); }
   std::size_t read(void* to, std::size_t n) override { return file_.read(to, n); }
-  std::size_t write(const void* from, std::size_t n) override { return file_.write(from, n); }
+  // All of it, in the library's eyes: what failed is known to the file, and libpng would say it on stderr.
+  std::size_t write(const void* from, std::size_t n) override {
+    file_.write(from, n);
+    return n;
+  }
   std::size_t pread(void* to, std::size_t n, std::int64_t offset) override {
     return at(offset, [&] { return file_.read(to, n); });
   }
@@ -159,6 +169,7 @@ class FileSink : public Sink {
     const lib::ImageSpec spec = make_spec(request, plan);
     native_ = spec.channelformats.empty() ? spec.format : lib::TypeDesc::UNKNOWN;
     y_offset_ = spec.y - region_.y0;
+    next_row_ = region_.y0;
     for (const SinkChannel& c : plan_.channels) {
       offsets_.push_back(pixel_bytes_);
       pixel_bytes_ += bytes_of(c.type);
@@ -168,6 +179,7 @@ class FileSink : public Sink {
   }
   ~FileSink() override {
     try {
+      if (out_ && !finished_ && plan_.format == "png") begin_quietly();
       out_.reset();  // may still write, so before the file
     } catch (...) {  // an unfinished file is removed: what its writer says of it is of no use
     }
@@ -178,6 +190,7 @@ class FileSink : public Sink {
     row_bytes_ = pixel_bytes_ * static_cast<std::size_t>(band.width());
     data_.resize(row_bytes_ * static_cast<std::size_t>(band.height()));
     tbb::parallel_for(band.y0, band.y1, [&](int y) { fill_row(layers, y); });
+    next_row_ = band.y1;
     guarded([&] {
       return out_->write_scanlines(band.y0 + y_offset_, band.y1 + y_offset_, 0, native_, data_.data());
     });
@@ -185,10 +198,25 @@ class FileSink : public Sink {
 
   void finish() override {
     guarded([&] { return out_->close(); });
+    finished_ = true;
     file_.commit();
   }
 
  private:
+  // libpng says "No IDATs written into file" on stderr when it is closed before it has put out any pixels.
+  // Rows of noise, which does not compress, make it put some out within a few KiB: the file is removed
+  // anyway.
+  void begin_quietly() {
+    const std::size_t row = pixel_bytes_ * static_cast<std::size_t>(region_.width());
+    data_.resize(row);
+    std::uint32_t state = 1;
+    const std::int64_t header = file_.size();
+    for (int y = next_row_; y < region_.y1 && file_.size() - header < 64; ++y) {
+      for (std::byte& b : data_) b = static_cast<std::byte>((state = state * 1664525u + 1013904223u) >> 24);
+      if (!out_->write_scanlines(y + y_offset_, y + 1 + y_offset_, 0, native_, data_.data())) return;
+    }
+  }
+
   [[noreturn]] void fail(std::string why) const {
     file_.check();  // says it better
     while (!why.empty() && why.back() == '\n') why.pop_back();
@@ -256,7 +284,8 @@ class FileSink : public Sink {
   Stream stream_;
   std::unique_ptr<lib::ImageOutput> out_;
   lib::TypeDesc native_;
-  int y_offset_ = 0;
+  int y_offset_ = 0, next_row_ = 0;
+  bool finished_ = false;
   std::vector<std::size_t> offsets_;
   std::size_t pixel_bytes_ = 0, row_bytes_ = 0;
   std::vector<std::byte> data_;

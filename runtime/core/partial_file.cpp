@@ -1,4 +1,4 @@
-#include "runtime/io/oiio/partial_file.h"
+#include "runtime/core/partial_file.h"
 
 #include "runtime/core/error.h"
 
@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <utility>
 
-namespace frustum::oiio {
+namespace frustum {
 namespace {
 
 std::atomic<unsigned> serial{0};
@@ -92,4 +92,4 @@ std::size_t PartialFile::read(void* to, std::size_t size) {
   return n;
 }
 
-}  // namespace frustum::oiio
+}  // namespace frustum

@@ -5,8 +5,9 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <string_view>
 
-namespace frustum::oiio {
+namespace frustum {
 
 // A stream to read, write and seek in, which remembers the first error of the operating system (a full
 // disk): image libraries drop some of them.
@@ -28,6 +29,7 @@ class PartialFile {
   // Bytes done; fewer than asked for at the end of the file, or where it failed.
   std::size_t read(void* to, std::size_t size);
   std::size_t write(const void* from, std::size_t size);
+  void add(std::string_view text) { write(text.data(), text.size()); }  // check() and commit() say what failed
 
  private:
   [[noreturn]] void fail(int error) const;
@@ -39,4 +41,4 @@ class PartialFile {
   int error_ = 0;
 };
 
-}  // namespace frustum::oiio
+}  // namespace frustum

@@ -1,0 +1,28 @@
+// Whole buffers as files: meshes, tables, numbers and whatever else flows between nodes.
+#pragma once
+
+#include "runtime/core/buffer.h"
+#include "runtime/core/sink.h"
+
+#include <string>
+#include <vector>
+
+namespace frustum {
+
+// Extensions of the files that a whole buffer of a kind can be saved as, without dots.
+std::vector<std::string> saved_as(const BufferType& kind);
+
+// Writes the buffer in the format of the path's extension, under a temporary name that is renamed when the
+// file is whole.
+//
+//   .ply .obj .glb .gltf   a mesh (mesh_writers.h)
+//   .csv                   the table form: RFC 4180 with a line of column names; numbers in the shortest text
+//                          that reads back to the same value
+//   .json                  {"format": "frustum.buffer/1", "type", "graph", "summary", "columns", "rows",
+//                          "total"}: the last three where there is a table form
+//
+// Rows are written in blocks: memory does not grow with the table. Throws NodeError("unknown_format",
+// "format_cannot_hold"), WorldError("cannot_write_file").
+void save_buffer_file(const Buffer& buffer, const SaveRequest& request);
+
+}  // namespace frustum

@@ -1,0 +1,279 @@
+#include "runtime/core/error.h"
+#include "runtime/io/mesh_writers.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace frustum {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "glTF holds little-endian numbers");
+
+constexpr int float_component = 5126, uint_component = 5125;
+
+Json color(const glm::dvec3& c) { return {c.x, c.y, c.z}; }
+
+// From a mesh to the JSON and the bytes of a glTF file. Bytes are those of the columns where they are f32
+// already.
+class Writer {
+ public:
+  Writer(const Mesh& mesh, const SaveRequest& request) : mesh_(split_corners(mesh)), request_(request) {}
+
+  void run(bool binary, PartialFile& to) {
+    describe();
+    if (binary)
+      write_glb(to);
+    else
+      write_gltf(to);
+  }
+
+ private:
+  // ----- numbers
+
+  std::size_t add_view(std::string_view bytes, int target) {
+    views_.push_back(
+        {{"buffer", 0}, {"byteOffset", size_}, {"byteLength", bytes.size()}, {"target", target}});
+    pieces_.push_back(bytes);
+    size_ += bytes.size();  // a multiple of 4: all numbers are 4 bytes
+    return views_.size() - 1;
+  }
+
+  template <class T>
+  std::string_view keep(std::vector<T> values) {
+    const std::size_t bytes = values.size() * sizeof(T);
+    auto kept = std::make_shared<std::vector<T>>(std::move(values));
+    kept_.push_back(kept);
+    return {reinterpret_cast<const char*>(kept->data()), bytes};
+  }
+
+  std::size_t add_accessor(Json accessor) {
+    accessors_.push_back(std::move(accessor));
+    return accessors_.size() - 1;
+  }
+
+  // The numbers of a real column as f32; `flip`: 1 - v of the second.
+  std::string_view floats(const Column& c, bool flip) {
+    if (c.kind() == NumberKind::f32 && !flip) return {static_cast<const char*>(c.data()), c.bytes()};
+    std::vector<float> out;
+    out.reserve(c.rows() * static_cast<std::size_t>(c.width()));
+    for (std::size_t i = 0; i < c.rows(); ++i)
+      for (int k = 0; k < c.width(); ++k)
+        out.push_back(static_cast<float>(flip && k == 1 ? 1 - c.number(i, k) : c.number(i, k)));
+    return keep(std::move(out));
+  }
+
+  std::size_t add_column(const Column& c, bool flip, bool bounds) {
+    const std::string_view bytes = floats(c, flip);
+    Json accessor = {{"bufferView", add_view(bytes, 34962)},
+                     {"componentType", float_component},
+                     {"count", c.rows()},
+                     {"type", c.width() == 1 ? "SCALAR" : fmt::format("VEC{}", c.width())}};
+    if (bounds) {
+      Json low = Json::array(), high = Json::array();
+      const auto width = static_cast<std::size_t>(c.width());
+      for (std::size_t k = 0; k < width; ++k) {
+        float least = std::numeric_limits<float>::infinity(), most = -least;
+        for (std::size_t i = 0; i < c.rows(); ++i) {
+          float v;
+          std::memcpy(&v, bytes.data() + 4 * (i * width + k), 4);
+          least = std::min(least, v), most = std::max(most, v);
+        }
+        low.push_back(least), high.push_back(most);
+      }
+      accessor["min"] = std::move(low), accessor["max"] = std::move(high);
+    }
+    return add_accessor(std::move(accessor));
+  }
+
+  // ----- what there is
+
+  static std::string attribute_name(const Column& c) {
+    if (c.name() == "position") return "POSITION";
+    if (c.name() == "normal") return "NORMAL";
+    if (c.name() == "color") return "COLOR_0";
+    if (c.name() == "uv") return "TEXCOORD_0";
+    if (is_coordinates(c)) return "TEXCOORD_" + c.name().substr(2);
+    std::string name = "_" + c.name();
+    for (char& ch : name) ch = ch >= 'a' && ch <= 'z' ? static_cast<char>(ch - 32) : ch <= ' ' ? '_' : ch;
+    return name;
+  }
+
+  // uv, uv1, uv2 ...
+  static bool is_coordinates(const Column& c) {
+    return c.name().starts_with("uv") && c.width() == 2 &&
+           c.name().find_first_not_of("0123456789", 2) == std::string::npos;
+  }
+
+  Json attributes() {
+    Json out = Json::object();
+    for (const Ref<Column>& c : mesh_.columns) {
+      const bool is_real = c->kind() == NumberKind::f32 || c->kind() == NumberKind::f64;
+      if (c->domain() == Domain::vertex && is_real)
+        out[attribute_name(*c)] = add_column(*c, is_coordinates(*c), c->name() == "position");
+      else if (c->name() != "triangle" && c->name() != "material")
+        warn_left_out(request_, "glTF", fmt::format("column '{}'", c->name()));
+    }
+    return out;
+  }
+
+  // Indices of the faces of each material, in the order of the faces; without materials, all at once.
+  void add_primitives(const Json& attributes) {
+    const Column* material = mesh_.materials ? mesh_.find("material") : nullptr;
+    const auto triangles = mesh_.triangles();
+    if (triangles.empty()) {  // points
+      primitives_.push_back({{"attributes", attributes}, {"mode", 0}});
+      return;
+    }
+    if (material == nullptr) {
+      add_primitive(attributes, {reinterpret_cast<const char*>(triangles.data()), triangles.size_bytes()},
+                    {});
+      return;
+    }
+    const auto number = material->values<std::uint32_t>();
+    std::vector<std::vector<glm::uvec3>> groups(mesh_.materials->materials.size());
+    for (std::size_t f = 0; f < triangles.size(); ++f) groups[number[f]].push_back(triangles[f]);
+    for (std::size_t m = 0; m < groups.size(); ++m)
+      if (!groups[m].empty()) add_primitive(attributes, keep(std::move(groups[m])), m);
+  }
+
+  void add_primitive(const Json& attributes, std::string_view indices, std::optional<std::size_t> material) {
+    const std::size_t accessor = add_accessor({{"bufferView", add_view(indices, 34963)},
+                                               {"componentType", uint_component},
+                                               {"count", indices.size() / 4},
+                                               {"type", "SCALAR"}});
+    Json primitive = {{"attributes", attributes}, {"indices", accessor}};
+    if (material) primitive["material"] = *material;
+    primitives_.push_back(std::move(primitive));
+  }
+
+  Json material(const Material& m) {
+    const auto clamped = [](double v) { return std::clamp(v, 0.0, 1.0); };
+    if (m.texture) textures_ = true;
+    Json base = {clamped(m.diffuse.x), clamped(m.diffuse.y), clamped(m.diffuse.z), 1};
+    Json out = {{"name", m.name},
+                {"pbrMetallicRoughness",
+                 {{"baseColorFactor", std::move(base)},
+                  {"metallicFactor", 0},
+                  {"roughnessFactor", std::sqrt(std::sqrt(2 / (std::max(m.shininess, 0.0) + 2)))}}},
+                {"extras",
+                 {{"frustum",
+                   {{"ambient", color(m.ambient)},
+                    {"diffuse", color(m.diffuse)},
+                    {"specular", color(m.specular)},
+                    {"shininess", m.shininess}}}}}};
+    if (m.two_sided) out["doubleSided"] = true;
+    if (m.emission != glm::dvec3(0))
+      out["emissiveFactor"] = {clamped(m.emission.x), clamped(m.emission.y), clamped(m.emission.z)};
+    return out;
+  }
+
+  void describe() {
+    Json asset = {{"version", "2.0"}};
+    for (const auto& [key, value] : request_.metadata) {
+      if (key == "Software")
+        asset["generator"] = value;
+      else
+        asset["extras"][key] = value;
+    }
+    json_ = {{"asset", std::move(asset)}, {"scene", 0}};
+    if (mesh_.vertices() == 0) {  // glTF has no accessor of nothing
+      json_["scenes"] = {Json::object()};
+      return;
+    }
+    add_primitives(attributes());
+    json_["scenes"] = {{{"nodes", {0}}}};
+    json_["nodes"] = {{{"mesh", 0}}};
+    json_["meshes"] = {{{"primitives", primitives_}}};
+    if (mesh_.materials && mesh_.find("material") != nullptr) {
+      for (const Material& m : mesh_.materials->materials) json_["materials"].push_back(material(m));
+      if (textures_) warn_left_out(request_, "glTF as written here", "textures");
+    }
+    json_["accessors"] = accessors_;
+    json_["bufferViews"] = views_;
+    if (size_ > std::numeric_limits<std::uint32_t>::max() / 2)
+      throw NodeError("format_cannot_hold",
+                      fmt::format("{}: {} bytes are more than a glTF file holds here", request_.path, size_));
+    json_["buffers"] = {{{"byteLength", size_}}};
+  }
+
+  // ----- files
+
+  static std::string text(const Json& j) { return j.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+  static std::string word(std::size_t v) {
+    const auto n = static_cast<std::uint32_t>(v);
+    std::string out(4, '\0');
+    std::memcpy(out.data(), &n, 4);
+    return out;
+  }
+
+  void write_glb(PartialFile& to) {
+    std::string json = text(json_);
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const std::size_t body = size_ != 0 ? 8 + size_ : 0;
+    to.add("glTF" + word(2) + word(12 + 8 + json.size() + body) + word(json.size()) + "JSON" + json);
+    if (body != 0) to.add(word(size_) + std::string("BIN\0", 4));
+    for (const std::string_view p : pieces_) {
+      to.add(p);
+      to.check();
+    }
+  }
+
+  void write_gltf(PartialFile& to) {
+    std::string json = text(json_);
+    if (size_ == 0) return to.add(json);
+    // The bytes go where their address is written: it is not made in memory.
+    const std::string mark = fmt::format("\"buffers\":[{{\"byteLength\":{}", size_);
+    const std::size_t at = json.rfind(mark) + mark.size();
+    to.add(json.substr(0, at) + ",\"uri\":\"data:application/octet-stream;base64,");
+    write_base64(to);
+    to.add("\"" + json.substr(at));
+  }
+
+  void write_base64(PartialFile& to) const {
+    static constexpr std::string_view digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    std::uint32_t bits = 0;
+    int held = 0;
+    for (const std::string_view p : pieces_)
+      for (const char c : p) {
+        bits = bits << 8 | static_cast<unsigned char>(c);
+        if (++held < 3) continue;
+        for (int shift = 18; shift >= 0; shift -= 6) out += digits[bits >> shift & 63];
+        bits = 0, held = 0;
+        if (out.size() < (1 << 20)) continue;
+        to.add(out);
+        to.check();
+        out.clear();
+      }
+    if (held == 1) (out += digits[bits >> 2 & 63]) += digits[bits << 4 & 63], out += "==";
+    if (held == 2)
+      ((out += digits[bits >> 10 & 63]) += digits[bits >> 4 & 63]) += digits[bits << 2 & 63], out += "=";
+    to.add(out);
+  }
+
+  Mesh mesh_;
+  const SaveRequest& request_;
+  Json json_, views_ = Json::array(), accessors_ = Json::array(), primitives_ = Json::array();
+  std::vector<std::string_view> pieces_;
+  std::vector<std::shared_ptr<void>> kept_;
+  std::size_t size_ = 0;
+  bool textures_ = false;
+};
+
+}  // namespace
+
+void write_gltf(const Mesh& mesh, bool binary, const SaveRequest& request, PartialFile& to) {
+  Writer(mesh, request).run(binary, to);
+}
+
+}  // namespace frustum
