@@ -47,7 +47,7 @@ class Materials {
     if (!seen_.insert(std::string(name)).second) return;
     const auto file = near_path(obj_, name);
     if (!file)
-      return warn("path_escapes", fmt::format("{}: mtllib '{}' leaves the folder of the file; it is not read",
+      return warn("unsafe_path", fmt::format("{}: mtllib '{}' leaves the folder of the file; it is not read",
                                               obj_.written, printable(name, 80)));
     if (!is_there(*file))
       return warn("missing_material_file",
@@ -98,14 +98,14 @@ class Materials {
   Ref<Texture> texture(const Written& w) {
     const auto file = near_path(obj_, w.map_kd);
     if (!file) {
-      warn("path_escapes", fmt::format("{}: '{}' leaves the folder of the OBJ file; it is not read",
+      warn("unsafe_path", fmt::format("{}: '{}' leaves the folder of the OBJ file; it is not read",
                                        w.map_place, printable(w.map_kd, 80)));
       return nullptr;
     }
     const auto [at, fresh] = textures_.try_emplace({file->resolved, w.clamp});
     if (!fresh) return at->second;
     if (!is_there(*file)) {
-      warn("missing_texture",
+      warn("missing_texture_file",
            fmt::format("{}: there is no file {}", w.map_place, printable(file->written, 80)));
       return nullptr;
     }

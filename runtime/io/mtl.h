@@ -29,7 +29,7 @@ namespace frustum {
 // d, Tr, map_* and whatever else has no counterpart is counted (warning "statements_skipped").
 //
 // A file that is missing, absolute or climbs out of the folder of the OBJ is not read and said so: warnings
-// "missing_material_file", "missing_texture", "path_escapes"; "missing_material" for names. A file named
+// "missing_material_file", "missing_texture_file", "unsafe_path"; "missing_material" for names. A file named
 // twice is read once. Throws NodeError("malformed_file") with file:line for what is no number or no MTL at
 // all.
 MaterialSet read_materials(std::span<const std::string_view> libraries, const FilePath& obj,

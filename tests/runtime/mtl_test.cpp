@@ -147,9 +147,9 @@ TEST_F(Obj, FilesThatAreNotThereAreSaid) {
 TEST_F(Obj, NamesThatLeaveTheFolderAreNotRead) {
   for (const std::string name : {"../a.png", "/etc/passwd", "C:\\a.png", "x/../../a.png", "..\\a.png"}) {
     EXPECT_EQ(material("newmtl one\nmap_Kd " + name + "\n").texture, nullptr);
-    EXPECT_THAT(warnings, ElementsAre("path_escapes")) << name;
+    EXPECT_THAT(warnings, ElementsAre("unsafe_path")) << name;
     read("mtllib " + name + "\n" + triangle + "usemtl one\nf 1/1/1 2/1/1 3/1/1\n");
-    EXPECT_THAT(warnings, ElementsAre("path_escapes", "missing_material")) << name;
+    EXPECT_THAT(warnings, ElementsAre("unsafe_path", "missing_material")) << name;
   }
 }
 
