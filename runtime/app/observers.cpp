@@ -52,6 +52,9 @@ void Observers::done(const WorkDone& work) {
 void Observers::pixel_times(const std::vector<PixelNodeTime>& times) {
   for (Observer* o : all_) o->pixel_times(times);
 }
+void Observers::cached(const NodeCaching& caching) {
+  for (Observer* o : all_) o->cached(caching);
+}
 void Observers::warned(std::string_view node, std::string_view code, std::string_view message) {
   for (Observer* o : all_) o->warned(node, code, message);
 }
@@ -89,8 +92,19 @@ void EventStream::pixel_times(const std::vector<PixelNodeTime>& times) {
   emit("pixel_times", {{"nodes", nodes}});
 }
 
+void EventStream::cached(const NodeCaching& caching) { emit("cached", to_json(caching)); }
+
 void EventStream::warned(std::string_view node, std::string_view code, std::string_view message) {
   emit("warned", {{"node", node}, {"code", code}, {"message", message}});
+}
+
+Json to_json(const NodeCaching& c) {
+  Json j = {{"node", c.node}, {"verdict", frustum::name_of(c.verdict)}};
+  for (const auto& [name, text] :
+       {std::pair{"from", &c.from}, {"why", &c.why}, {"detail", &c.detail}, {"kept", &c.kept}})
+    if (!text->empty()) j[name] = *text;
+  if (c.bytes != 0) j["bytes"] = c.bytes;
+  return j;
 }
 
 struct Trace::Events {

@@ -22,6 +22,7 @@ class Observers : public Observer {
   void progress(std::string_view node, double fraction) override;
   void done(const WorkDone& work) override;
   void pixel_times(const std::vector<PixelNodeTime>& times) override;
+  void cached(const NodeCaching& caching) override;
   void warned(std::string_view node, std::string_view code, std::string_view message) override;
 
  private:
@@ -36,6 +37,7 @@ class Observers : public Observer {
 //   "counters"}
 //   {"event": "pixel_times", "nodes": [{"node", "time_ms", "pixels"}]}
 //   {"event": "warned", "node": "mesh", "code", "message"}
+//   {"event": "cached", "node": "mesh", "verdict": "miss", "why": "params_changed", ...}   as to_json(NodeCaching)
 // `write` gets them one line at a time, without the line's end.
 class EventStream : public Observer {
  public:
@@ -45,6 +47,7 @@ class EventStream : public Observer {
   void progress(std::string_view node, double fraction) override;
   void done(const WorkDone& work) override;
   void pixel_times(const std::vector<PixelNodeTime>& times) override;
+  void cached(const NodeCaching& caching) override;
   void warned(std::string_view node, std::string_view code, std::string_view message) override;
 
  private:
@@ -91,6 +94,9 @@ class StepTimes : public Observer {
   std::vector<Row> rows_;
   std::map<std::string, std::size_t> index_;
 };
+
+// {"node", "verdict", "from", "why", "detail", "kept", "bytes"}; texts that are empty are left out.
+Json to_json(const NodeCaching&);
 
 std::chrono::nanoseconds median(std::vector<std::chrono::nanoseconds> times);  // of at least one
 

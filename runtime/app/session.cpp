@@ -48,10 +48,17 @@ Loaded Session::load(const std::string& path, LoadOptions options) const {
   return load_graph(path, registry_, options);
 }
 
+void Session::use_disk(const std::string& folder, std::uint64_t limit_bytes, bool check) {
+  disk_.emplace(folder, limit_bytes);
+  check_ = check;
+}
+
 RunResult Session::run(const Graph& graph, RunOptions options, bool keep) {
   if (!options.make_sink) options.make_sink = open_image_sink;
   if (!options.save_buffer) options.save_buffer = save_buffer_file;
-  options.cache = keep ? &cache_ : nullptr;
+  options.cache = keep && !check_ ? &cache_ : nullptr;
+  options.disk = keep && disk_ ? &*disk_ : nullptr;
+  options.check_cache = check_;
   return run_graph(graph, options);
 }
 

@@ -25,12 +25,19 @@ class Session {
   // the file cannot be read.
   Loaded load(const std::string& path, LoadOptions options = {}) const;
 
-  // run_graph() with sinks, and with this session's cache unless `keep` is false.
+  // From now on runs also keep their buffers in a folder, or compare with what is there. Throws
+  // WorldError("cache_unusable").
+  void use_disk(const std::string& folder, std::uint64_t limit_bytes, bool check);
+
+  // run_graph() with sinks, and with this session's caches unless `keep` is false. While the folder is only
+  // compared with, nothing is taken from memory.
   RunResult run(const Graph&, RunOptions options, bool keep = true);
 
  private:
   Registry registry_;
   MemoryCache cache_;
+  std::optional<DiskCache> disk_;
+  bool check_ = false;
 };
 
 // The end ports of a graph: every output port of the nodes that feed no other node.

@@ -20,6 +20,19 @@ struct Ops {
     h.value(c.fov_y).value(c.near_z).value(c.far_z).value(c.height).value(c.reversed_z);
     h.value(c.resolution.x).value(c.resolution.y);
   }
+  static void save(const Camera& c, ArchiveWriter& w) {
+    for (const glm::dvec3& v : {c.eye, c.target, c.up}) w.raw(&v, sizeof v);
+    w.value(c.fov_y).value(c.near_z).value(c.far_z).value(c.height).value(c.reversed_z);
+    w.value(c.resolution.x).value(c.resolution.y);
+  }
+  static Camera load(ArchiveReader& r) {
+    Camera c;
+    for (glm::dvec3* v : {&c.eye, &c.target, &c.up}) r.raw(v, sizeof *v);
+    for (double* v : {&c.fov_y, &c.near_z, &c.far_z, &c.height}) *v = r.value<double>();
+    c.reversed_z = r.flag();
+    for (int* v : {&c.resolution.x, &c.resolution.y}) *v = r.value<int>();
+    return c;
+  }
   // far_z may be infinite; as a NaN it still counts.
   static Health health(const Camera& c) {
     const std::pair<std::string_view, double> values[] = {

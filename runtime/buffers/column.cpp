@@ -41,13 +41,18 @@ std::string_view name_of(NumberKind k) { return kind_names[static_cast<std::size
 
 Column::Column(std::string_view name, Domain domain, NumberKind kind, int width, std::size_t rows,
                Space space)
+    : Column(name, domain, kind, width, rows, space,
+             aligned_storage(rows, static_cast<std::size_t>(width) * bytes_of(kind))) {}
+
+Column::Column(std::string_view name, Domain domain, NumberKind kind, int width, std::size_t rows,
+               Space space, std::shared_ptr<void> storage)
     : name_(name),
       domain_(domain),
       kind_(kind),
       width_(width),
       rows_(rows),
       space_(space),
-      data_(aligned_storage(rows, static_cast<std::size_t>(width) * bytes_of(kind))),
+      data_(std::move(storage)),
       health_(std::make_shared<HealthMemo>()) {}
 
 double Column::number(std::size_t row, int component) const {
@@ -86,6 +91,24 @@ Health Column::count_health() const {
 void Column::hash(Hasher& h) const {
   h.text(name_).value(domain_).value(kind_).value(width_).value(rows_).value(space_).bytes(data_.get(),
                                                                                            bytes());
+}
+
+void Column::save(ArchiveWriter& w) const {
+  w.text(name_).value(domain_).value(kind_).value(width_).value(std::uint64_t{rows_}).value(space_);
+  w.shared(data_, bytes());
+}
+
+Ref<Column> Column::load(ArchiveReader& r) {
+  std::string name = r.text();
+  const auto domain = r.choice(Domain::mesh);
+  const auto kind = r.choice(NumberKind::u32);
+  const int width = r.value<int>();
+  const auto rows = r.value<std::uint64_t>();
+  const auto space = r.choice(Space::screen);
+  if (width < 1 || width > 4 || rows > std::numeric_limits<std::size_t>::max() / 64)
+    throw ArchiveError("no such column");
+  const std::size_t bytes = rows * static_cast<std::size_t>(width) * bytes_of(kind);
+  return std::make_shared<Column>(name, domain, kind, width, rows, space, r.shared(bytes));
 }
 
 void Column::require(NumberKind kind, int width) const {

@@ -1,6 +1,7 @@
 // Attributes as columns: one named array of numbers for all the vertices, corners or faces of a mesh.
 #pragma once
 
+#include "runtime/core/archive.h"
 #include "runtime/core/buffer.h"
 #include "runtime/core/error.h"
 #include "runtime/core/space.h"
@@ -61,6 +62,9 @@ class Column {
     return c;
   }
   Column(std::string_view name, Domain, NumberKind, int width, std::size_t rows, Space = Space::none);
+  // Over storage that is there already: at least rows x width numbers, on a 64-byte boundary.
+  Column(std::string_view name, Domain, NumberKind, int width, std::size_t rows, Space,
+         std::shared_ptr<void> storage);
 
   const std::string& name() const { return name_; }
   Domain domain() const { return domain_; }
@@ -96,6 +100,8 @@ class Column {
   // columns only.
   Health health() const;
   void hash(Hasher&) const;
+  void save(ArchiveWriter&) const;
+  static Ref<Column> load(ArchiveReader&);
 
  private:
   struct HealthMemo;

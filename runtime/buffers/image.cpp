@@ -88,8 +88,52 @@ Json json_value(const Tile& t, int plane, int sample, int x, int y) {
   });
 }
 
+void save_raster(const Raster& r, ArchiveWriter& w) {
+  const Frame& f = r.frame();
+  w.value(f.window.x0).value(f.window.y0).value(f.window.x1).value(f.window.y1);
+  save_part(f.pattern, w);
+  w.value(std::uint64_t{f.planes.size()});
+  for (const Plane& p : f.planes) w.text(p.name).value(p.kind);
+  w.text(f.color_space).value(f.alpha);
+  const Tile t = r.view();
+  for (int p = 0; p < plane_count(r); ++p)
+    with_type(f.planes[static_cast<std::size_t>(p)].kind, [&]<class T>(const T*) {
+      for (int s = 0; s < t.samples(); ++s)
+        for (int y = t.rect().y0; y < t.rect().y1; ++y) {
+          const auto row = row_of<T>(t, p, s, y);
+          w.raw(row.data(), row.size_bytes());
+        }
+    });
+}
+
+Raster load_raster(ArchiveReader& r) {
+  Frame f;
+  for (int* side : {&f.window.x0, &f.window.y0, &f.window.x1, &f.window.y1}) *side = r.value<int>();
+  f.pattern = load_part<SamplePattern>(r);
+  for (std::size_t n = r.count(1); n > 0; --n) {
+    std::string name = r.text();
+    f.planes.push_back({std::move(name), r.choice(PlaneKind::u32)});
+  }
+  f.color_space = r.text();
+  f.alpha = r.choice(Alpha::premultiplied);
+  const std::size_t pixel = f.bytes_per_pixel();
+  if (pixel != 0 && static_cast<std::uint64_t>(f.window.area()) > r.left() / pixel)
+    throw ArchiveError("more pixels than bytes");
+  Raster raster(std::move(f));
+  const Tile t = raster.view();
+  for (int p = 0; p < plane_count(raster); ++p)
+    with_type(raster.frame().planes[static_cast<std::size_t>(p)].kind, [&]<class T>(const T*) {
+      for (int s = 0; s < t.samples(); ++s)
+        for (int y = t.rect().y0; y < t.rect().y1; ++y)
+          r.raw(t.row<T>(p, s, y), static_cast<std::size_t>(t.rect().width()) * sizeof(T));
+    });
+  return raster;
+}
+
 template <class Kind>
 struct Ops {
+  static void save(const Kind& k, ArchiveWriter& w) { save_raster(k.raster, w); }
+  static Kind load(ArchiveReader& r) { return Kind{load_raster(r)}; }
   static std::size_t bytes(const Kind& k) { return sizeof k + k.raster.bytes(); }
   static const Raster& raster(const Kind& k) { return k.raster; }
   // The frame lies in the storage that copies of a raster share, so its address stands for it.

@@ -23,6 +23,22 @@ struct Ops {
         h.value(v.x).value(v.y).value(v.z);
     }
   }
+  static void save(const LightSet& s, ArchiveWriter& w) {
+    w.value(std::uint64_t{s.lights.size()});
+    for (const Light& l : s.lights) {
+      w.value(l.kind);
+      for (const glm::dvec3& v : {l.color, l.direction, l.position, l.attenuation}) w.raw(&v, sizeof v);
+    }
+  }
+  static LightSet load(ArchiveReader& r) {
+    LightSet s;
+    for (std::size_t n = r.count(sizeof(Light::Kind)); n > 0; --n) {
+      Light& l = s.lights.emplace_back();
+      l.kind = r.choice(Light::Kind::point);
+      for (glm::dvec3* v : {&l.color, &l.direction, &l.position, &l.attenuation}) r.raw(v, sizeof *v);
+    }
+    return s;
+  }
   static Health health(const LightSet& s) {
     Health sum;
     for (std::size_t i = 0; i < s.lights.size(); ++i) {

@@ -35,9 +35,38 @@ Health health_of_numbers(const Material& m, std::string_view owner) {
   return health_of(owner, values);
 }
 
+// Everything but the texture, which is named by its place among those of the set; 0: none.
+void save_numbers(const Material& m, std::uint32_t texture, ArchiveWriter& w) {
+  w.text(m.name).value(m.model);
+  for (const glm::dvec3& v : {m.ambient, m.diffuse, m.specular, m.emission}) w.raw(&v, sizeof v);
+  w.value(m.shininess).value(m.two_sided).value(m.uv_set).value(texture);
+  w.raw(&m.texture_from_uv, sizeof m.texture_from_uv);
+}
+
+Material load_numbers(const std::vector<Ref<Texture>>& textures, ArchiveReader& r) {
+  Material m;
+  m.name = r.text();
+  m.model = r.choice(Reflection::blinn);
+  for (glm::dvec3* v : {&m.ambient, &m.diffuse, &m.specular, &m.emission}) r.raw(v, sizeof *v);
+  m.shininess = r.value<double>();
+  m.two_sided = r.flag();
+  m.uv_set = r.value<std::uint32_t>();
+  const auto texture = r.value<std::uint32_t>();
+  if (texture > textures.size()) throw ArchiveError("a texture that is not there");
+  if (texture != 0) m.texture = textures[texture - 1];
+  r.raw(&m.texture_from_uv, sizeof m.texture_from_uv);
+  return m;
+}
+
 struct Ops {
   static std::size_t bytes(const Material& m) {
     return sizeof m + m.name.size() + (m.texture ? m.texture->bytes() : 0);
+  }
+  static void save(const Material& m, ArchiveWriter& w) { save_materials({{m}}, w); }
+  static Material load(ArchiveReader& r) {
+    MaterialSet set = load_materials(r);
+    if (set.materials.size() != 1) throw ArchiveError("one material is wanted");
+    return std::move(set.materials[0]);
   }
   static void parts(const Material& m, const std::function<void(const void*, std::size_t)>& visit) {
     visit(&m, sizeof m + m.name.size());
@@ -107,6 +136,28 @@ Health health_of_materials(const MaterialSet& set) {
     sum.add(static_cast<const Texture*>(texture)->health());
   });
   return sum;
+}
+
+void save_materials(const MaterialSet& set, ArchiveWriter& w) {
+  std::vector<const Texture*> textures;
+  visit_textures(set,
+                 [&](const void* t, std::size_t) { textures.push_back(static_cast<const Texture*>(t)); });
+  w.value(std::uint64_t{textures.size()});
+  for (const Texture* t : textures) buffer_type<Texture>().save(t, w);
+  w.value(std::uint64_t{set.materials.size()});
+  for (const Material& m : set.materials) {
+    const auto at = std::find(textures.begin(), textures.end(), m.texture.get());
+    save_numbers(m, m.texture ? static_cast<std::uint32_t>(at - textures.begin()) + 1 : 0, w);
+  }
+}
+
+MaterialSet load_materials(ArchiveReader& r) {
+  std::vector<Ref<Texture>> textures;
+  for (std::size_t n = r.count(1); n > 0; --n)
+    textures.push_back(buffer_type<Texture>().load(r).as<Texture>());
+  MaterialSet set;
+  for (std::size_t n = r.count(1); n > 0; --n) set.materials.push_back(load_numbers(textures, r));
+  return set;
 }
 
 template <>

@@ -1,6 +1,7 @@
 // What a surface is made of.
 #pragma once
 
+#include "runtime/core/archive.h"
 #include "runtime/core/buffer.h"
 
 #include <glm/mat3x3.hpp>
@@ -50,6 +51,9 @@ std::size_t bytes_of(const MaterialSet&);
 void hash_materials(const MaterialSet&, Hasher&);
 Health health_of_materials(const MaterialSet&);
 void visit_textures(const MaterialSet&, const std::function<void(const void* storage, std::size_t bytes)>&);
+
+void save_materials(const MaterialSet&, ArchiveWriter&);
+MaterialSet load_materials(ArchiveReader&);
 
 // The name of the column that holds a set of texture coordinates: "uv", "uv1", "uv2" ...
 std::string uv_column_name(std::uint32_t set);

@@ -130,6 +130,22 @@ struct Ops {
     if (m.materials) sum.add(health_of_materials(*m.materials));
     return sum;
   }
+  static void save(const Mesh& m, ArchiveWriter& w) {
+    w.value(std::uint64_t{m.columns.size()});
+    for (const auto& c : m.columns) c->save(w);
+    w.value(m.materials != nullptr);
+    if (m.materials) save_materials(*m.materials, w);
+    save_part(m.camera, w);
+    w.value(static_cast<std::uint8_t>(m.closed ? *m.closed : 2));
+  }
+  static Mesh load(ArchiveReader& r) {
+    Mesh m;
+    for (std::size_t n = r.count(1); n > 0; --n) m.columns.push_back(Column::load(r));
+    if (r.flag()) m.materials = std::make_shared<const MaterialSet>(load_materials(r));
+    m.camera = load_part<Camera>(r);
+    if (const auto closed = r.choice<std::uint8_t>(2); closed != 2) m.closed = closed == 1;
+    return m;
+  }
   static Json summary(const Mesh& m) {
     Json columns = Json::array();
     for (const auto& c : m.columns) columns.push_back(describe_column(*c));

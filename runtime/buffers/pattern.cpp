@@ -15,6 +15,20 @@ struct Ops {
   static void hash(const SamplePattern& p, Hasher& h) {
     h.value(p.samples).value(p.period).span<std::uint16_t>(p.x).span<std::uint16_t>(p.y);
   }
+  static void save(const SamplePattern& p, ArchiveWriter& w) {
+    w.value(p.samples).value(p.period).span<std::uint16_t>(p.x).span<std::uint16_t>(p.y);
+  }
+  static SamplePattern load(ArchiveReader& r) {
+    SamplePattern p;
+    p.samples = r.value<int>();
+    p.period = r.value<int>();
+    p.x = r.vector<std::uint16_t>();
+    p.y = r.vector<std::uint16_t>();
+    const bool sane = p.samples > 0 && p.period > 0 && p.period <= 4096 && (p.period & (p.period - 1)) == 0;
+    const std::size_t n = sane ? p.index(p.samples - 1, p.period - 1, p.period - 1) + 1 : 0;
+    if (!sane || p.x.size() != n || p.y.size() != n) throw ArchiveError("no such pattern");
+    return p;
+  }
   static Health health(const SamplePattern& p) { return {.values = p.x.size() + p.y.size()}; }
   static Json summary(const SamplePattern& p) { return {{"samples", p.samples}, {"period_px", p.period}}; }
   // One row a sample of the repeating block, in pixels.

@@ -23,6 +23,16 @@ struct Ops {
   static void hash(const Surface& s, Hasher& h) {
     h.value(s.space).span(numbers(s)).span(std::span<const std::array<std::uint32_t, 16>>(s.patches));
   }
+  static void save(const Surface& s, ArchiveWriter& w) {
+    w.value(s.space).span<glm::dvec3>(s.points).span<std::array<std::uint32_t, 16>>(s.patches);
+  }
+  static Surface load(ArchiveReader& r) {
+    Surface s;
+    s.space = r.choice(Space::screen);
+    s.points = r.vector<glm::dvec3>();
+    s.patches = r.vector<std::array<std::uint32_t, 16>>();
+    return s;
+  }
   static Health health(const Surface& s) {
     return to_health(scan(numbers(s)), numbers(s).size(),
                      [](std::size_t i) { return fmt::format("control point {}", i / 3); });

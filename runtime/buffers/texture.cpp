@@ -73,6 +73,43 @@ struct Ops {
   static std::size_t bytes(const Texture& t) { return t.bytes(); }
   static void hash(const Texture& t, Hasher& h) { h.value(t.digest()); }
   static Health health(const Texture& t) { return t.health(); }
+  static void save(const Texture& t, ArchiveWriter& w) {
+    w.value(std::uint64_t{t.source.index()});
+    if (const auto* c = std::get_if<Checker>(&t.source)) {
+      w.value(c->scale);
+      for (const glm::dvec3& v : {c->even, c->odd}) w.raw(&v, sizeof v);
+    }
+    if (const auto* p = std::get_if<MipPyramid>(&t.source)) {
+      w.value(p->wrap_u).value(p->wrap_v).value(std::uint64_t{p->levels.size()});
+      for (const auto& level : p->levels) {
+        w.value(level.width).value(level.height).value(std::uint64_t{level.rgba.size()});
+        // Apart and by content, since every mesh of a scene carries its textures along. Nobody owns a
+        // pointer into a vector; it is only read here.
+        w.shared({std::shared_ptr<const void>(), level.rgba.data()}, level.rgba.size() * sizeof(float));
+      }
+    }
+  }
+  static Texture load(ArchiveReader& r) {
+    if (r.choice<std::uint64_t>(1) == 0) {
+      Checker c;
+      c.scale = r.value<double>();
+      for (glm::dvec3* v : {&c.even, &c.odd}) r.raw(v, sizeof *v);
+      return {c};
+    }
+    MipPyramid p;
+    p.wrap_u = r.choice(Wrap::mirror);
+    p.wrap_v = r.choice(Wrap::mirror);
+    for (std::size_t n = r.count(1); n > 0; --n) {
+      const int width = r.value<int>(), height = r.value<int>();
+      const auto values = r.value<std::uint64_t>();
+      if (width < 0 || height < 0 || values != 4 * static_cast<std::uint64_t>(std::int64_t{width} * height))
+        throw ArchiveError("a level of another size");
+      const auto storage = r.shared(values * sizeof(float));
+      const auto* rgba = static_cast<const float*>(storage.get());
+      p.levels.push_back({width, height, {rgba, rgba + values}});
+    }
+    return {std::move(p)};
+  }
   static Json summary(const Texture& t) {
     return std::visit([](const auto& source) { return summary_of(source); }, t.source);
   }

@@ -25,6 +25,8 @@ struct NumberOps {
     const std::pair<std::string_view, double> values[] = {{"value", n.value}};
     return health_of("number", values);
   }
+  static void save(const Number& n, ArchiveWriter& w) { w.value(n.value); }
+  static Number load(ArchiveReader& r) { return {r.value<double>()}; }
   static Json summary(const Number& n) { return {{"value", json_number(n.value)}}; }
   static Json table(const Number& n, std::size_t first, std::size_t count) {
     return json_table({"value"}, 1, first, count,
@@ -42,6 +44,12 @@ struct MatrixOps {
   static Health health(const Matrix& m) {
     return to_health(scan(std::span<const double>(&m.value[0][0], 16)), 16,
                      [](std::size_t i) { return fmt::format("matrix, row {} column {}", i % 4, i / 4); });
+  }
+  static void save(const Matrix& m, ArchiveWriter& w) { w.raw(&m.value, sizeof m.value); }
+  static Matrix load(ArchiveReader& r) {
+    Matrix m;
+    r.raw(&m.value, sizeof m.value);
+    return m;
   }
   static Json rows(const Matrix& m) {
     Json out = Json::array();
@@ -78,6 +86,24 @@ struct TableOps {
       h.text(c.name).text(c.unit).span<double>(c.numbers).value(c.texts.size());
       for (const std::string& text : c.texts) h.text(text);
     }
+  }
+  static void save(const Table& t, ArchiveWriter& w) {
+    w.value(std::uint64_t{t.columns.size()});
+    for (const auto& c : t.columns) {
+      w.text(c.name).text(c.unit).span<double>(c.numbers).value(std::uint64_t{c.texts.size()});
+      for (const std::string& text : c.texts) w.text(text);
+    }
+  }
+  static Table load(ArchiveReader& r) {
+    Table t;
+    for (std::size_t n = r.count(1); n > 0; --n) {
+      Table::Column& c = t.columns.emplace_back();
+      c.name = r.text();
+      c.unit = r.text();
+      c.numbers = r.vector<double>();
+      for (std::size_t texts = r.count(8); texts > 0; --texts) c.texts.push_back(r.text());
+    }
+    return t;
   }
   static Health health(const Table& t) {
     Health sum;

@@ -29,6 +29,7 @@ void add_run(CLI::App&, Invocation&);
 void add_check(CLI::App&, Invocation&);
 void add_plan(CLI::App&, Invocation&);
 void add_inspect(CLI::App&, Invocation&);
+void add_report(CLI::App&, Invocation&);
 void add_nodes(CLI::App&, Invocation&);
 void add_diff(CLI::App&, Invocation&);
 void add_sweep(CLI::App&, Invocation&);
@@ -77,6 +78,17 @@ void apply(const RunArguments&, RunOptions&);
 
 // "samples=64,lit:interpolation=phong" as its parts; commas inside brackets belong to a value.
 std::vector<std::string> assignments(const std::string& text);
+// ----- where buffers are kept from one run to the next
+struct CacheArguments {
+  std::vector<std::string> cache;  // DIR, off, check
+  std::string size;
+};
+void add_cache_arguments(CLI::App&, CacheArguments&);
+// Opens the folder: that of --cache, else of $FRUSTUM_CACHE. False where nothing is to be kept, not even in
+// memory. Throws UsageError, WorldError("cache_unusable").
+bool open_cache(const CacheArguments&, Session&);
+Json to_json(const std::vector<NodeCaching>&);
+
 // "3,4" as two integers and the like; throws UsageError naming the option.
 std::vector<int> integers(std::string_view option, std::string_view text, std::size_t count);
 // "1-48" or "7"; throws UsageError.

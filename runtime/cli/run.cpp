@@ -19,6 +19,7 @@ namespace {
 struct Arguments {
   GraphArguments graph;
   RunArguments run;
+  CacheArguments cache;
   std::vector<std::string> wanted;
   std::string out = "out", frames, trace;
   int repeat = 0;
@@ -75,8 +76,17 @@ struct Outcome {
   Diagnostics problems;
   std::optional<Culprit> culprit;
   std::uint64_t peak_bytes = 0;
+  std::vector<NodeCaching> caching;  // of the last frame
+  bool cache_differs = false;
   std::vector<std::chrono::nanoseconds> times;  // of whole runs
 };
+
+// What --repeat and --cache off say of every node: no cache was asked.
+std::vector<NodeCaching> bypassed(const Graph& graph) {
+  std::vector<NodeCaching> list;
+  for (const GraphNode& n : graph.nodes) list.push_back({.node = n.id});
+  return list;
+}
 
 // One run of one frame; the outcome gathers over frames and repetitions.
 void run_once(Session& session, const Graph& graph, const RunOptions& options, bool keep, Outcome& o) {
@@ -88,13 +98,16 @@ void run_once(Session& session, const Graph& graph, const RunOptions& options, b
   for (std::string& f : r.files)
     if (std::find(o.files.begin(), o.files.end(), f) == o.files.end()) o.files.push_back(std::move(f));
   o.ports = ports_json(graph, r);
+  o.caching = std::move(r.caching);
+  if (r.cache_differs) o.cache_differs = true;
+  if (!keep) o.caching = bypassed(graph);
   if (!o.culprit) o.culprit = r.culprit;
   if (o.times.size() == 1 || keep) o.problems.add(r.problems);
 }
 
 // Loads the graph for one frame and runs it. False where the rest is not worth trying.
-bool run_frame(Session& session, const Arguments& args, std::optional<int> frame, Listeners& listeners,
-               Outcome& o) {
+bool run_frame(Session& session, const Arguments& args, bool keep, std::optional<int> frame,
+               Listeners& listeners, Outcome& o) {
   LoadOptions load = load_options(args.graph);
   load.frame = frame;
   Loaded loaded = session.load(args.graph.path, std::move(load));
@@ -109,7 +122,7 @@ bool run_frame(Session& session, const Arguments& args, std::optional<int> frame
   options.cancel = &cancel_flag();
   options.observer = &listeners.all;
   for (int i = 0; i < std::max(1, args.repeat) && o.code == done; ++i)
-    run_once(session, *loaded.graph, options, args.repeat == 0, o);
+    run_once(session, *loaded.graph, options, keep, o);
   return o.code == done;
 }
 
@@ -133,7 +146,7 @@ void print_text(const Outcome& o, const Listeners& l, std::chrono::nanoseconds t
                    .c_str(),
                stderr);
   if (o.code == cancelled) std::fputs("cancelled\n", stderr);
-  if (o.code != done) return;
+  if (o.code != done && o.code != check_failed) return;
   for (const std::string& f : o.files) print(f + "\n");
   for (const auto& [name, port] : o.ports.items())
     print(fmt::format("{}  {}  {}  {}\n", name, port["type"].get<std::string>(),
@@ -150,14 +163,16 @@ void print_json(const Outcome& o, const Listeners& l, std::chrono::nanoseconds t
     return std::chrono::duration<double, std::milli>(t).count();
   };
   constexpr auto end_of = [](int code) {
-    return code == done        ? "done"
-           : code == cancelled ? "cancelled"
-           : code == bad_input ? "failed"
-                               : "world_failed";
+    return code == done           ? "done"
+           : code == check_failed ? "cache_differs"
+           : code == cancelled    ? "cancelled"
+           : code == bad_input    ? "failed"
+                                  : "world_failed";
   };
   Json out = {{"end", end_of(o.code)},      {"files", o.files},
               {"ports", o.ports},           {"ms", ms(total)},
               {"peak_bytes", o.peak_bytes}, {"peak_process_bytes", peak_process_bytes()}};
+  out["cache"] = to_json(o.caching);
   if (o.culprit) out["culprit"] = culprit_json(*o.culprit);
   if (l.steps) {
     const auto times_json = [&](const std::string& what, const std::vector<std::chrono::nanoseconds>& times) {
@@ -177,16 +192,18 @@ void print_json(const Outcome& o, const Listeners& l, std::chrono::nanoseconds t
 int run(const Arguments& args, bool json) {
   const auto began = std::chrono::steady_clock::now();
   Session session;
+  const bool keep = open_cache(args.cache, session) && args.repeat == 0;
   Listeners listeners;
   attach(listeners, args);
   Outcome outcome;
   if (args.frames.empty()) {
-    run_frame(session, args, std::nullopt, listeners, outcome);
+    run_frame(session, args, keep, std::nullopt, listeners, outcome);
   } else {
     const auto [first, last] = frame_range(args.frames);
     for (int frame = first; frame <= last; ++frame)
-      if (!run_frame(session, args, frame, listeners, outcome)) break;
+      if (!run_frame(session, args, keep, frame, listeners, outcome)) break;
   }
+  if (outcome.code == done && outcome.cache_differs) outcome.code = check_failed;
   listeners.bar.reset();
   const auto total = std::chrono::steady_clock::now() - began;
   if (listeners.trace) write_text(args.trace, listeners.trace->text());
@@ -214,6 +231,7 @@ void add_run(CLI::App& app, Invocation& chosen) {
   c.add_option("--frames", args->frames, "Sets the graph parameter frame to each of these in turn.")
       ->type_name("A-B");
   add_run_arguments(c, args->run);
+  add_cache_arguments(c, args->cache);
   c.add_option("--trace", args->trace, "Writes a timeline in the Chrome trace format.")->type_name("FILE");
   c.add_option("--repeat", args->repeat,
                "Runs this often without the cache and prints the times of every step.")

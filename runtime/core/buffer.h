@@ -14,6 +14,8 @@
 
 namespace frustum {
 
+class ArchiveReader;
+class ArchiveWriter;
 class Buffer;
 class ParamReader;
 
@@ -36,6 +38,11 @@ struct BufferType {
   // Kinds that are pixels: the raster inside, and a buffer of this kind made from one.
   const Raster& (*raster)(const void*) = nullptr;
   Buffer (*from_raster)(Raster) = nullptr;
+
+  // Kinds that the cache keeps on disk: all of the content, so that load(save(b)) has the digest of b. `load` throws
+  // ArchiveError for bytes that are no such value.
+  void (*save)(const void*, ArchiveWriter&) = nullptr;
+  Buffer (*load)(ArchiveReader&) = nullptr;
 
   // Kinds that an input may hold as a literal, {"value": ...}.
   Buffer (*from_json)(const Json&, ParamReader&) = nullptr;

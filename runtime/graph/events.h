@@ -12,8 +12,19 @@
 
 namespace frustum {
 
-enum class CacheVerdict : std::uint8_t { off, miss, hit };
+// not_needed: what reads the node's buffers was found, so they were not looked for.
+enum class CacheVerdict : std::uint8_t { off, miss, hit, not_needed };
 std::string_view name_of(CacheVerdict);
+
+// What the caches did for one node.
+struct NodeCaching {
+  std::string node;
+  CacheVerdict verdict = CacheVerdict::off;
+  std::string from = {};              // of a hit: "memory" or "disk"
+  std::string why = {}, detail = {};  // of a miss, where the cache on disk knows: "params_changed", "samples"
+  std::string kept = {};              // of a miss: "stored", "cheap", "not_whole", ...; with check: "same"
+  std::uint64_t bytes = 0;            // of the buffers found on disk, or computed
+};
 
 // One piece of work that ended: a geometry node, the preparation of a pixel node, or a pass over tiles.
 struct WorkDone {
@@ -44,6 +55,7 @@ class Observer {
   virtual void progress(std::string_view /*node*/, double /*fraction*/) {}
   virtual void done(const WorkDone&) {}
   virtual void pixel_times(const std::vector<PixelNodeTime>&) {}
+  virtual void cached(const NodeCaching&) {}  // at the end, one a node that was looked at
   virtual void warned(std::string_view /*node*/, std::string_view /*code*/, std::string_view /*message*/) {}
 };
 

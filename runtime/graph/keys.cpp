@@ -1,5 +1,7 @@
 #include "runtime/graph/keys.h"
 
+#include "runtime/core/version.h"
+
 #include <nlohmann/json.hpp>
 
 #include <fstream>
@@ -22,39 +24,81 @@ void hash_file(const std::string& path, Hasher& h) {
   h.value(size);
 }
 
-Digest node_key(const Graph& graph, const GraphNode& node, const std::vector<Digest>& keys, bool files) {
-  const NodeType& type = *node.type;
-  Hasher h;
-  h.text(type.name).value(type.version).value(node.precision).value(graph.seed);
-  h.text(write_record(type.params, node.params.get()).dump());
-  if (files && type.params.files) type.params.files(node.params.get(), [&](const FilePath& f) { hash_file(f.resolved, h); });
-  for (const auto& sources : node.inputs) {
-    h.value(sources.size());
-    for (const Source& s : sources) {
-      if (const auto* from = std::get_if<PortRef>(&s)) h.value(output_key(keys[from->node], from->port));
-      else h.value(std::get<Buffer>(s).digest());
-    }
-  }
-  return h.done();
+// The processor's model and abilities as the system states them. Libraries choose their code by these, so a node that calls
+// one for its numbers promises the same bytes on one kind of processor only.
+Digest processor() {
+  static const Digest digest = [] {
+    std::ifstream info("/proc/cpuinfo");
+    Hasher h;
+    int found = 0;
+    for (std::string line; found < 2 && std::getline(info, line);)
+      if (line.starts_with("model name") || line.starts_with("flags") || line.starts_with("Features"))
+        h.text(line), ++found;
+    return h.done();
+  }();
+  return digest;
 }
 
-std::vector<Digest> node_keys(const Graph& graph, bool files) {
-  std::vector<Digest> keys;
+NodeKey node_key(const Graph& graph, const GraphNode& node, const std::vector<NodeKey>& keys, bool this_machine) {
+  const NodeType& type = *node.type;
+  NodeKey k;
+  k.type = Hasher().text(type.name).value(type.version).done();
+  k.how =
+      Hasher().value(node.precision).value(graph.seed).value(type.foreign && this_machine ? processor() : Digest{}).done();
+  Hasher files;
+  if (this_machine && type.params.files)
+    type.params.files(node.params.get(), [&](const FilePath& f) { hash_file(f.resolved, files); });
+  k.files = files.done();
+  const Json params = write_record(type.params, node.params.get());
+  for (const auto& [name, value] : params.items())
+    k.params.emplace_back(name, Hasher().text(value.dump()).done());
+  for (std::size_t i = 0; i < node.inputs.size(); ++i) {
+    Hasher h;
+    h.value(node.inputs[i].size());
+    for (const Source& s : node.inputs[i]) {
+      if (const auto* from = std::get_if<PortRef>(&s))
+        h.value(output_key(keys[from->node].key, from->port));
+      else
+        h.value(std::get<Buffer>(s).digest());
+    }
+    k.inputs.emplace_back(type.inputs[i].name, h.done());
+  }
+  Hasher h;
+  h.value(k.type).value(k.how).value(k.files);
+  for (const auto* list : {&k.params, &k.inputs}) {
+    h.value(list->size());
+    for (const auto& [name, digest] : *list) h.text(name).value(digest);
+  }
+  k.key = h.done();
+  return k;
+}
+
+// Without `this_machine`, the content of files and the processor are left out.
+std::vector<NodeKey> explained_keys(const Graph& graph, bool this_machine) {
+  std::vector<NodeKey> keys;
   keys.reserve(graph.nodes.size());
-  for (const GraphNode& n : graph.nodes) keys.push_back(node_key(graph, n, keys, files));
+  for (const GraphNode& n : graph.nodes) keys.push_back(node_key(graph, n, keys, this_machine));
   return keys;
 }
 
 }  // namespace
 
-std::vector<Digest> node_keys(const Graph& graph) { return node_keys(graph, true); }
+std::vector<NodeKey> explained_keys(const Graph& graph) { return explained_keys(graph, true); }
+
+std::vector<Digest> node_keys(const Graph& graph) {
+  std::vector<Digest> keys;
+  for (NodeKey& k : explained_keys(graph)) keys.push_back(k.key);
+  return keys;
+}
 
 Digest graph_digest(const Graph& graph) {
   Hasher h;
-  for (const Digest& key : node_keys(graph, false)) h.value(key);
+  for (const NodeKey& k : explained_keys(graph, false)) h.value(k.key);
   return h.done();
 }
 
 Digest output_key(const Digest& node, std::size_t port) { return Hasher().value(node).value(port).done(); }
+
+Digest disk_key(const Digest& key) { return Hasher().text("disk").text(build_id()).value(key).done(); }
 
 }  // namespace frustum

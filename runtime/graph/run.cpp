@@ -1,7 +1,6 @@
 #include "runtime/graph/run.h"
 
 #include "runtime/core/float_environment.h"
-#include "runtime/graph/keys.h"
 #include "runtime/graph/run_state.h"
 
 #include <fmt/format.h>
@@ -25,7 +24,7 @@ class Runner {
   Runner(const Graph& graph, const RunOptions& options) : state_(graph, options) {}
 
   RunResult run() {
-    find_in_cache();
+    state_.caches.look_up([this](PortRef p, const Buffer& b) { return take_found(p, b); });
     state_.plan = make_plan(state_.graph, state_.options.demand,
                             {.fuse = state_.options.fuse, .cropped = state_.options.region.has_value(), .given = [this](PortRef p) { return static_cast<bool>(state_.buffer(p)); }});
     wanted_.resize(state_.graph.nodes.size());
@@ -39,23 +38,29 @@ class Runner {
  private:
   // ----- what is there already
 
-  void find_in_cache() {
-    MemoryCache* cache = state_.options.cache;
-    if (cache == nullptr) return;
-    state_.keys = node_keys(state_.graph);
-    for (std::size_t n = 0; n < state_.graph.nodes.size(); ++n) {
-      const NodeType& type = *state_.graph.nodes[n].type;
-      for (std::size_t p = 0; p < type.outputs.size(); ++p)
-        if (const auto found = cache->find(output_key(state_.keys[n], p)))
-          if (!found->buffers.empty() && usable(PortRef{n, p})) state_.publish({n, p}, found->buffers.front());
+  // A buffer from a cache is taken where it leaves half of the allowed memory to what is still to be computed.
+  bool take_found(PortRef p, const Buffer& b) {
+    const std::uint64_t limit = state_.options.memory;
+    if (limit != 0 && state_.ledger.live() + b.bytes() > limit / 2) return false;
+    state_.publish(p, b);
+    return true;
+  }
+
+  // What the nodes said whose work the caches saved; they are those that feed the plan and are not in it.
+  void replay_notes(const std::vector<NodeCaching>& caching) {
+    std::vector<bool> ran(state_.graph.nodes.size(), false);
+    for (const PlannedNode& n : state_.plan.nodes) ran[n.node] = true;
+    std::size_t at = 0;
+    for (const NodeCaching& c : caching) {
+      while (state_.graph.nodes[at].id != c.node) ++at;
+      if (!ran[at]) replay(at);
     }
   }
 
-  // With a region, a demanded port is asked for in part; the cache holds only whole ones.
-  bool usable(PortRef p) const {
-    if (!state_.options.region || !state_.graph.nodes[p.node].type->is_pixel()) return true;
-    const auto& ports = state_.options.demand.ports;
-    return std::find(ports.begin(), ports.end(), p) == ports.end();
+  void replay(std::size_t n) {
+    const NodeNotes notes = state_.caches.notes(n);
+    for (const auto& [code, message] : notes.warnings) state_.warning(n, code, message);
+    if (notes.culprit) state_.culprit(*notes.culprit, n);
   }
 
   // ----- lifetimes
@@ -195,12 +200,11 @@ class Runner {
       if (!outputs[p]) continue;
       bytes += outputs[p].bytes();
       check_health(n, p, outputs[p]);
-      if (state_.options.cache != nullptr)
-        state_.options.cache->insert(output_key(state_.keys[n], p), {{outputs[p]}, nullptr});
-      state_.publish({n, p}, std::move(outputs[p]));
+      state_.publish({n, p}, outputs[p]);
     }
     state_.check_memory(0);
     report(n, ctx, WorkDone::Kind::node, start, bytes);
+    for (std::size_t p = 0; p < outputs.size(); ++p) state_.caches.keep({n, p}, outputs[p]);
   }
 
   void check_health(std::size_t n, std::size_t port, const Buffer& b) {
@@ -208,7 +212,9 @@ class Runner {
     Health h = b.health();
     if (h.finite()) return;
     const GraphNode& node = state_.graph.nodes[n];
-    state_.culprit({node.id, node.type->outputs[port].name, h.first, {}, h}, n);
+    const Culprit culprit{node.id, node.type->outputs[port].name, h.first, {}, h};
+    state_.caches.said(n, culprit);
+    state_.culprit(culprit, n);
   }
 
   void prepare_node(std::size_t n) {
@@ -216,11 +222,10 @@ class Runner {
     state_.observe([&](Observer& o) { o.started(node.id); });
     const auto start = state_.now();
     Context ctx = context(n);
-    MemoryCache* cache = state_.options.cache;
-    const Digest key = cache != nullptr ? Hasher().text("prepared").value(state_.keys[n]).value(ctx.wanted_outputs).done() : Digest{};
-    const auto found = cache != nullptr ? cache->find(key) : std::nullopt;
-    auto ready = found ? std::static_pointer_cast<const ReadyNode>(found->prepared) : prepare(n, ctx);
-    if (cache != nullptr && !found) cache->insert(key, {{}, ready});
+    const auto found = state_.caches.find_prepared(n, ctx.wanted_outputs);
+    auto ready = found ? std::static_pointer_cast<const ReadyNode>(found) : prepare(n, ctx);
+    if (found) replay(n);
+    else state_.caches.keep_prepared(n, ctx.wanted_outputs, ready);
     state_.set_ready(n, std::move(ready));
     report(n, ctx, WorkDone::Kind::prepare, start, 0, found ? CacheVerdict::hit : CacheVerdict::miss);
   }
@@ -258,13 +263,13 @@ class Runner {
               CacheVerdict verdict = CacheVerdict::miss) {
     const GraphNode& node = state_.graph.nodes[n];
     for (const auto& [code, message] : ctx.warnings()) {
-      state_.problem({.code = code, .severity = Severity::warning, .pointer = node.place.pointer, .message = message,
-                      .file = node.place.file, .line = node.place.line, .column = node.place.column},
-                     n);
-      state_.observe([&](Observer& o) { o.warned(node.id, code, message); });
+      state_.caches.said(n, code, message);
+      state_.warning(n, code, message);
     }
+    const auto time = state_.now() - start;
+    state_.caches.ran(n, time);
     state_.observe([&](Observer& o) {
-      o.done({kind, {node.id}, start, state_.now() - start, bytes, state_.options.cache != nullptr ? verdict : CacheVerdict::off,
+      o.done({kind, {node.id}, start, time, bytes, state_.caches.any() ? verdict : CacheVerdict::off,
               std::max(0, tbb::this_task_arena::current_thread_index()), ctx.counters()});
     });
   }
@@ -274,6 +279,10 @@ class Runner {
   RunResult result() {
     RunResult r;
     r.end = end_;
+    r.caching = state_.caches.finish(r.end == End::done);
+    r.cache_differs = state_.caches.differs();
+    replay_notes(r.caching);
+    for (const NodeCaching& c : r.caching) state_.observe([&](Observer& o) { o.cached(c); });
     state_.take_results(r);
     if (r.end == End::done)
       for (const std::size_t o : state_.options.demand.outputs) r.files.push_back(output_path(state_.graph.outputs[o], state_.options));
@@ -294,6 +303,7 @@ std::string_view name_of(CacheVerdict v) {
     case CacheVerdict::off: return "off";
     case CacheVerdict::miss: return "miss";
     case CacheVerdict::hit: return "hit";
+    case CacheVerdict::not_needed: return "not_needed";
   }
   return "";
 }

@@ -3,6 +3,7 @@
 
 #include "runtime/core/sink.h"
 #include "runtime/graph/cache.h"
+#include "runtime/graph/disk_cache.h"
 #include "runtime/graph/events.h"
 #include "runtime/graph/plan.h"
 
@@ -24,7 +25,9 @@ struct RunOptions {
   std::uint64_t memory = 0;                // bytes of buffers that may be live at once; 0: no limit
   const CancelFlag* cancel = nullptr;
   Observer* observer = nullptr;
-  MemoryCache* cache = nullptr;            // null: nothing is kept
+  MemoryCache* cache = nullptr;            // null: nothing is kept in memory
+  DiskCache* disk = nullptr;               // null: nothing is kept on disk
+  bool check_cache = false;                // nothing is taken from disk; what is there is compared with what is computed
   std::optional<int> frame = {};           // replaces {frame} in output names
 };
 
@@ -41,6 +44,8 @@ struct RunResult {
   Diagnostics problems;                    // runtime errors and warnings, each at its node's place
   std::optional<Culprit> culprit;
   std::uint64_t peak_bytes = 0;            // of live buffers
+  std::vector<NodeCaching> caching;        // one a node that was looked at; empty without a cache
+  bool cache_differs = false;              // options.check_cache: some buffer on disk was not what the node makes
   enum class End { done, failed, world_failed, cancelled } end = End::done;
 };
 

@@ -1,4 +1,3 @@
-#include "runtime/graph/keys.h"
 #include "runtime/graph/pixel_run.h"
 #include "runtime/graph/run_state.h"
 
@@ -45,8 +44,10 @@ class Pass {
     const auto start = state_.now();
     const PixelOutcome outcome = walk(edge);
     for (auto& sink : sinks_) sink->finish();
-    publish();
     report(outcome, start);
+    state_.caches.ran_pass(pass_.nodes, state_.now() - start);
+    publish();
+    keep_streamed();
   }
 
  private:
@@ -113,12 +114,21 @@ class Pass {
           job.layers.push_back({whole.type().raster(whole.data())});
         } else {
           job.layers.push_back({add_root(layer.from)});
-          whole_.emplace_back(std::nullopt);
+          whole_.push_back(whole_for_cache(layer.from));
         }
         area_ = hull(area_, cut_to_region(layer_frame(job.layers.back()).window));
       }
       jobs_.push_back(std::move(job));
     }
+  }
+
+  // A picture that only streams into a file, made whole besides where the cache wants to keep it.
+  std::optional<Raster> whole_for_cache(PortRef port) {
+    const Frame& f = frame(roots_.back());
+    const bool again = std::any_of(streamed_.begin(), streamed_.end(), [&](const auto& s) { return s.first == port; });
+    if (again || !state_.caches.wants_whole(port, raster_bytes(f))) return std::nullopt;
+    streamed_.emplace_back(port, roots_.size() - 1);
+    return Raster(f);
   }
 
   const Frame& layer_frame(const SinkSource& s) const {
@@ -254,12 +264,16 @@ class Pass {
       const PortRef port = pass_.roots[i].port;
       const bool complete = whole_[i]->frame().window == frame(roots_[i]).window;
       const Buffer b = graph_.port(port).types.front()->from_raster(*whole_[i]);
-      if (complete && state_.options.cache != nullptr)
-        state_.options.cache->insert(output_key(state_.keys[port.node], port.port), {{b}, nullptr});
+      if (complete) state_.caches.keep(port, b);
       if (complete) state_.publish(port, b);
       else state_.publish_part(port, b);
     }
     state_.ledger.remove_bytes(early_bytes_);
+  }
+
+  void keep_streamed() {
+    for (const auto& [port, root] : streamed_)
+      state_.caches.keep(port, graph_.port(port).types.front()->from_raster(*whole_[root]));
   }
 
   // ----- reporting
@@ -289,8 +303,10 @@ class Pass {
     if (outcome.culprit) {
       const PixelCulprit& c = *outcome.culprit;
       const std::size_t node = pass_.nodes[c.op];
-      state_.culprit({graph_.nodes[node].id, graph_.nodes[node].type->outputs[c.port].name, c.health.first, c.inputs, c.health},
-                     node);
+      const Culprit culprit{graph_.nodes[node].id, graph_.nodes[node].type->outputs[c.port].name, c.health.first, c.inputs,
+                            c.health};
+      state_.caches.said(node, culprit);
+      state_.culprit(culprit, node);
     }
   }
 
@@ -303,6 +319,7 @@ class Pass {
   std::vector<std::optional<Raster>> whole_;  // one a root
   std::vector<SinkJob> jobs_;
   std::vector<std::unique_ptr<Sink>> sinks_;
+  std::vector<std::pair<PortRef, std::size_t>> streamed_;  // ports of files that are whole for the cache, and their roots
   std::vector<TileCosts> early_;
   std::uint64_t early_bytes_ = 0;  // of rasters made whole by a cut
   Rect area_;

@@ -26,7 +26,7 @@ Buffer cut_to_region(const Buffer& b, const std::optional<Rect>& region) {
 }  // namespace
 
 RunState::RunState(const Graph& g, const RunOptions& o)
-    : graph(g), options(o), ready_(g.nodes.size()), ready_uses_(g.nodes.size()) {
+    : graph(g), options(o), caches(g, options), ready_(g.nodes.size()), ready_uses_(g.nodes.size()) {
   buffers_.reserve(g.nodes.size());
   uses_.reserve(g.nodes.size());
   for (const GraphNode& n : g.nodes) {
@@ -63,6 +63,14 @@ void RunState::problem(Diagnostic d, std::size_t order) {
   problems_.emplace_back(order, std::move(d));
 }
 
+void RunState::warning(std::size_t node, const std::string& code, const std::string& message) {
+  const GraphNode& n = graph.nodes[node];
+  problem({.code = code, .severity = Severity::warning, .pointer = n.place.pointer, .message = message, .file = n.place.file,
+           .line = n.place.line, .column = n.place.column},
+          node);
+  observe([&](Observer& listener) { listener.warned(n.id, code, message); });
+}
+
 void RunState::culprit(Culprit c, std::size_t order) {
   const std::lock_guard lock(mutex_);
   culprits_.emplace_back(order, std::move(c));
@@ -88,6 +96,7 @@ void RunState::take_results(RunResult& result) {
   const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
   std::stable_sort(problems_.begin(), problems_.end(), earlier);
   for (auto& [order, d] : problems_) result.problems.add(std::move(d));
+  result.problems.add(caches.take_problems());
   const auto first = std::min_element(culprits_.begin(), culprits_.end(), earlier);
   if (first != culprits_.end()) result.culprit = std::move(first->second);
   for (const PortRef p : options.demand.ports)

@@ -3,6 +3,7 @@
 
 #include "runtime/graph/ledger.h"
 #include "runtime/graph/run.h"
+#include "runtime/graph/run_cache.h"
 
 #include <atomic>
 #include <map>
@@ -23,7 +24,7 @@ class RunState {
   const Graph& graph;
   const RunOptions& options;
   Plan plan;
-  std::vector<Digest> keys;  // empty where there is no cache
+  RunCache caches;
   Ledger ledger;
 
   // ----- published results
@@ -42,6 +43,7 @@ class RunState {
 
   // ----- reports, from any thread
   void problem(Diagnostic d, std::size_t order);
+  void warning(std::size_t node, const std::string& code, const std::string& message);  // to the observer as well
   void culprit(Culprit c, std::size_t order);
   // What every file of this run says of where it comes from: program and version, title and digest of the graph.
   std::vector<std::pair<std::string, std::string>> metadata() const;
