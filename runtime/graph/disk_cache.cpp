@@ -4,7 +4,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -24,30 +23,6 @@ constexpr std::align_val_t cache_line{64};
 std::shared_ptr<void> aligned_storage(std::size_t bytes) {
   void* p = ::operator new(std::max<std::size_t>(bytes, 1), cache_line);
   return {p, [](void* data) { ::operator delete(data, cache_line); }};
-}
-
-struct ObjectFile {
-  fs::path path;
-  std::uint64_t bytes = 0;
-  timespec used{};
-};
-
-bool earlier(const ObjectFile& a, const ObjectFile& b) {
-  if (a.used.tv_sec != b.used.tv_sec) return a.used.tv_sec < b.used.tv_sec;
-  return a.used.tv_nsec != b.used.tv_nsec ? a.used.tv_nsec < b.used.tv_nsec : a.path < b.path;
-}
-
-// Every regular file below `folder`; what vanishes meanwhile or cannot be read is left out.
-std::vector<ObjectFile> files_below(const fs::path& folder) {
-  std::vector<ObjectFile> files;
-  std::error_code ignored;
-  for (fs::recursive_directory_iterator at(folder, ignored), end; at != end; at.increment(ignored)) {
-    struct stat s {};
-    if (::lstat(at->path().c_str(), &s) == 0 && S_ISREG(s.st_mode))
-      files.push_back({at->path(), static_cast<std::uint64_t>(s.st_size), s.st_mtim});
-    if (ignored) break;
-  }
-  return files;
 }
 
 }  // namespace
@@ -122,10 +97,6 @@ DiskCache::DiskCache(fs::path folder, std::uint64_t limit_bytes)
   if (const fs::path tag = folder_ / "CACHEDIR.TAG"; storing_ && !fs::exists(tag, error))
     std::ofstream(tag) << "Signature: 8a477f597d28d172789f06886806bc55\n# Buffers kept by frustum; may be "
                           "deleted at any time.\n";
-}
-
-DiskCache::~DiskCache() {
-  if (size_ && *size_ > limit_) evict();
 }
 
 // ----- names
@@ -245,21 +216,6 @@ std::optional<std::string> DiskCache::load_notes(const Digest& key) {
 
 // ----- writing
 
-void DiskCache::added(std::uint64_t bytes) {
-  bool over = false;
-  {
-    const std::lock_guard lock(mutex_);
-    if (!size_) {
-      size_ = 0;
-      for (const ObjectFile& f : files_below(folder_ / "objects")) *size_ += f.bytes;
-    } else {
-      *size_ += bytes;
-    }
-    over = *size_ > limit_;
-  }
-  if (over) evict();
-}
-
 bool DiskCache::finish(CacheFileWriter& file, const Digest& key, const fs::path& name) {
   std::error_code error;
   fs::create_directory(name.parent_path(), error);
@@ -341,30 +297,6 @@ void DiskCache::store_index(std::string_view graph, std::string_view text) {
   std::error_code error;
   if (out) fs::rename(part, index_path(folder_, graph), error);
   if (!out || error) fs::remove(part, error);
-}
-
-// ----- eviction
-
-void DiskCache::evict() {
-  const int lock = ::open((folder_ / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock < 0) return;
-  if (::flock(lock, LOCK_EX | LOCK_NB) == 0) {
-    std::vector<ObjectFile> files = files_below(folder_ / "objects");
-    std::sort(files.begin(), files.end(), earlier);
-    std::uint64_t total = 0;
-    for (const ObjectFile& f : files) total += f.bytes;
-    const std::uint64_t goal = total > limit_ ? limit_ - limit_ / 10 : limit_;
-    for (const ObjectFile& f : files) {
-      if (total <= goal) break;
-      if (::unlink(f.path.c_str()) == 0) total -= f.bytes;
-    }
-    const std::time_t hour_ago = std::time(nullptr) - 3600;
-    for (const ObjectFile& f : files_below(folder_ / "tmp"))
-      if (f.used.tv_sec < hour_ago) ::unlink(f.path.c_str());
-    const std::lock_guard guard(mutex_);
-    size_ = total;
-  }
-  ::close(lock);
 }
 
 }  // namespace frustum

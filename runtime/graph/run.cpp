@@ -200,7 +200,8 @@ class Runner {
       if (!outputs[p]) continue;
       bytes += outputs[p].bytes();
       check_health(n, p, outputs[p]);
-      state_.publish({n, p}, outputs[p]);
+      // A port that was found in a cache is there, and may be being read.
+      if (ctx.wants(p)) state_.publish({n, p}, outputs[p]);
     }
     state_.check_memory(0);
     report(n, ctx, WorkDone::Kind::node, start, bytes);
