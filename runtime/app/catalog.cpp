@@ -1,6 +1,7 @@
 #include "runtime/app/catalog.h"
 
 #include "runtime/app/files.h"
+#include "runtime/app/suite/suite.h"
 
 #include <nlohmann/json.hpp>
 

@@ -31,7 +31,6 @@ Json knobs_json(const NodeType& type);
 // Draft 2020-12 schemas. Anywhere in a node's parameters the text "$name" may stand for a graph parameter.
 Json params_schema(const NodeType& type);
 Json graph_schema(const Registry& registry);
-Json suite_schema();
 
 // Pages in Markdown.
 std::string node_page(const NodeType& type);

@@ -1,4 +1,4 @@
-// JSON Schemas of graph and suite files, draft 2020-12, for editors: what they accept, `frustum check`
+// JSON Schemas of graph files, draft 2020-12, for editors: what they accept, `frustum check`
 // accepts or explains.
 #include "runtime/app/catalog.h"
 
@@ -97,40 +97,6 @@ Json outputs_schema() {
           {"additionalProperties", std::move(out)}};
 }
 
-Json check_schema() {
-  const Json number = {{"type", "number"}, {"minimum", 0}};
-  const auto bound = [&](const char* doc) {
-    Json j = {{"description", doc}};
-    j.update(number);
-    return j;
-  };
-  const Json probe = object(
-      {{"pixel", {{"type", "array"}, {"items", {{"type", "integer"}}}, {"minItems", 2}, {"maxItems", 2}}},
-       {"sample", {{"type", "integer"}, {"minimum", 0}, {"default", 0}}},
-       {"plane", text("A plane by name; the first one if left out.")},
-       {"equals", {{"type", "number"}}},
-       {"abs", bound("How far the value may be from it.")}},
-      {"pixel", "equals"});
-  return object(
-      {{"port", text("NODE.PORT, or an output by name.")},
-       {"golden", {{"type", "boolean"}, {"description", "Compare with what was accepted."}}},
-       {"same_as", text("Compare with another port of the same run.")},
-       {"exact", {{"type", "boolean"}, {"description", "Bit for bit; the default without a tolerance."}}},
-       {"abs", bound("Every value within this, but for the share that `fraction` leaves.")},
-       {"fraction",
-        {{"type", "number"},
-         {"minimum", 0},
-         {"maximum", 1},
-         {"default", 1},
-         {"description", "Share of the values for which `abs` has to hold."}}},
-       {"max", bound("No value further away than this.")},
-       {"rmse", bound("Root of the mean squared difference.")},
-       {"probe", probe},
-       {"shape", {{"type", "object"}, {"description", "Entries of the port's summary, and what they are."}}},
-       {"why", text("The reason for a tolerance above zero.")}},
-      {"port"});
-}
-
 }  // namespace
 
 Json params_schema(const NodeType& type) {
@@ -184,39 +150,6 @@ Json graph_schema(const Registry& registry) {
        {"outputs", outputs_schema()},
        {"ui", {{"type", "object"}, {"description", "Positions and the like; never part of a hash."}}}},
       {"format", "nodes"}));
-  return out;
-}
-
-Json suite_schema() {
-  const Json values = {{"type", "object"}, {"description", "ADDRESS and value, as for --set."}};
-  const Json matrix = {{"type", "object"},
-                       {"additionalProperties", {{"type", "array"}, {"minItems", 1}}},
-                       {"description", "ADDRESS and a list of values; the case runs for every combination."}};
-  const Json preset = object({{"set", values}, {"matrix", matrix}});
-  const Json expect = object({{"code", text("Of a diagnostic that loading or running must give.")},
-                              {"pointer", text("Where it points.")},
-                              {"line", {{"type", "integer"}}},
-                              {"column", {{"type", "integer"}}},
-                              {"suggestion", text("One of its suggestions.")}},
-                             {"code"});
-  const Json one_case =
-      object({{"id", text("Unique in the suite.")},
-              {"graph", text("Relative to the suite; * makes one case of every file that matches.")},
-              {"use", list({{"type", "string"}})},
-              {"set", values},
-              {"matrix", matrix},
-              {"precision", precision_schema()},
-              {"checks", list(check_schema())},
-              {"expect", one_of({expect, list(expect)})},
-              {"tags", list({{"type", "string"}})}},
-             {"id", "graph"});
-  Json out = {{"$schema", draft}, {"title", "frustum suite"}};
-  out.update(object({{"$schema", {{"type", "string"}}},
-                     {"format", {{"const", "frustum.suite/1"}}},
-                     {"title", text("One line for people.")},
-                     {"presets", {{"type", "object"}, {"additionalProperties", preset}}},
-                     {"cases", list(one_case)}},
-                    {"format", "cases"}));
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <set>
 
 namespace frustum {
@@ -15,6 +16,26 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* format = "frustum.golden/1";
+constexpr const char* pixels_end = ".exr";
+constexpr const char* values_end = ".values.json";
+
+// The same numbers in a frame that has as many: rows of all samples in one sequence, sample by sample.
+Raster restacked(const Raster& from, const Frame& frame) {
+  Raster out(frame);
+  const Rect &a = from.frame().window, &b = frame.window;
+  const int rows = a.height() * from.frame().samples();
+  const auto copy_plane = [&]<class T>(int plane, T) {
+    for (int row = 0; row < rows && !a.empty(); ++row)
+      std::copy_n(from.view().row<T>(plane, row / a.height(), a.y0 + row % a.height()), a.width(),
+                  out.view().row<T>(plane, row / b.height(), b.y0 + row % b.height()));
+  };
+  for (std::size_t p = 0; p < frame.planes.size(); ++p) switch (frame.planes[p].kind) {
+      case PlaneKind::f32: copy_plane(static_cast<int>(p), float{}); break;
+      case PlaneKind::f64: copy_plane(static_cast<int>(p), double{}); break;
+      case PlaneKind::u32: copy_plane(static_cast<int>(p), std::uint32_t{}); break;
+    }
+  return out;
+}
 
 Json read_book(const fs::path& path) {
   Json book = Json::parse(read_text(path), nullptr, false);
@@ -41,19 +62,48 @@ const Golden* GoldenBook::find(std::string_view key) const {
   return found != entries_.end() ? &found->second : nullptr;
 }
 
-Raster GoldenBook::pixels(const Golden& golden) const {
-  return load_raster((folder_ / (golden.digest + ".exr")).string());
+bool GoldenBook::has_pixels(const Golden& golden) const {
+  std::error_code none;
+  return fs::exists(folder_ / (golden.digest + pixels_end), none);
 }
 
-void GoldenBook::accept(const std::string& key, const Buffer& buffer, const std::string& reason) {
-  const std::string digest = to_hex(buffer.digest());
+bool GoldenBook::has_values(const Golden& golden) const {
+  std::error_code none;
+  return fs::exists(folder_ / (golden.digest + values_end), none);
+}
+
+Raster GoldenBook::pixels(const Golden& golden, const Frame& like) const {
+  const Raster stored = load_raster((folder_ / (golden.digest + pixels_end)).string());
+  Frame frame = stored.frame();
+  frame.color_space = like.color_space, frame.alpha = like.alpha;
+  if (like.pattern && frame.window.height() == like.window.height() * like.samples() &&
+      frame.window.width() == like.window.width())
+    frame.window = like.window, frame.pattern = like.pattern;
+  return restacked(stored, frame);
+}
+
+void GoldenBook::save_pixels(const Raster& raster, const std::string& path) {
+  Frame frame = raster.frame();
+  frame.window.y1 = frame.window.y0 + frame.window.height() * frame.samples();
+  frame.pattern = nullptr;
+  save_raster(restacked(raster, frame), path);
+}
+
+Json GoldenBook::values(const Golden& golden) const {
+  const fs::path path = folder_ / (golden.digest + values_end);
+  Json values = Json::parse(read_text(path), nullptr, false);
+  if (values.is_discarded()) throw WorldError("bad_golden", fmt::format("{} is no JSON", path.generic_string()));
+  return values;
+}
+
+void GoldenBook::accept(const std::string& key, const std::string& digest, const std::string& reason,
+                        const fs::path& staged) {
   entries_[key] = {digest, std::string(version), reason};
   changed_ = true;
-  if (!buffer.type().is_pixels()) return;
-  const Raster& raster = buffer.type().raster(buffer.data());
-  if (raster.frame().pattern) return;  // many samples: judged by digest alone
+  if (staged.empty()) return;
+  const std::string name = staged.filename().string();
   fs::create_directories(folder_);
-  save_raster(raster, (folder_ / (digest + ".exr")).string());
+  fs::rename(staged, folder_ / (digest + name.substr(name.find('.'))));
 }
 
 void GoldenBook::save() {
@@ -66,11 +116,15 @@ void GoldenBook::save() {
 
   std::set<std::string> named;
   for (const fs::path& book : matching_files(folder_ / "*.json")) {
+    if (book.string().ends_with(values_end)) continue;
     const Json read = read_book(book);
     for (const auto& [key, entry] : read["entries"].items()) named.insert(entry.value("digest", ""));
   }
-  for (const fs::path& stored : matching_files(folder_ / "*.exr"))
-    if (!named.contains(stored.stem().string())) fs::remove(stored);
+  for (const char* end : {pixels_end, values_end})
+    for (const fs::path& stored : matching_files(folder_ / ("*" + std::string(end)))) {
+      const std::string file = stored.filename().string();
+      if (!named.contains(file.substr(0, file.find('.')))) fs::remove(stored);
+    }
 }
 
 }  // namespace frustum

@@ -1,5 +1,5 @@
-// Accepted results: one book per suite that names the digest of each, and for pixels a file to measure
-// against.
+// Accepted results: one book per suite that names the digest of each, and for what is compared with a tolerance a
+// file to measure against.
 #pragma once
 
 #include "runtime/core/buffer.h"
@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace frustum {
 
@@ -24,14 +25,25 @@ class GoldenBook {
   // book.
   GoldenBook(std::filesystem::path folder, std::string name);
 
+  const std::filesystem::path& folder() const { return folder_; }
   const Golden* find(std::string_view key) const;
-  // The stored pixels of an entry, as floats; throws WorldError where the file is missing.
-  Raster pixels(const Golden& golden) const;
 
-  // Records `buffer` under `key`; pixels with one value each are also stored, as FOLDER/DIGEST.exr.
-  void accept(const std::string& key, const Buffer& buffer, const std::string& reason);
-  // Writes the book where something was accepted, and removes stored pixels that no book of the folder
-  // names any more.
+  // FOLDER/DIGEST.exr: pixels as floats and ids, several samples of a pixel below each other. They are read back
+  // with the samples, colour space and alpha of `like`, where the size fits. Throws WorldError where the file
+  // cannot be read.
+  bool has_pixels(const Golden& golden) const;
+  Raster pixels(const Golden& golden, const Frame& like) const;
+  static void save_pixels(const Raster& raster, const std::string& path);
+  // FOLDER/DIGEST.values.json: the numbers of anything else.
+  bool has_values(const Golden& golden) const;
+  Json values(const Golden& golden) const;
+
+  // Records a digest under `key`, with this version; `staged` (may be empty) is the file with its numbers, which
+  // becomes FOLDER/DIGEST with the same extension.
+  void accept(const std::string& key, const std::string& digest, const std::string& reason,
+              const std::filesystem::path& staged);
+  // Writes the book where something was accepted, and removes stored numbers that no book of the folder names
+  // any more.
   void save();
 
  private:

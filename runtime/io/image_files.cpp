@@ -7,6 +7,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <atomic>
 #include <filesystem>
 
 namespace frustum {
@@ -28,8 +29,11 @@ const ImageModule& load() {
   return *entry();
 }
 
+std::atomic<bool> is_open{false};
+
 const ImageModule& image_module() {
   static const ImageModule& loaded = load();
+  is_open = true;
   return loaded;
 }
 
@@ -49,6 +53,9 @@ void warn_of_linear_colors(const SinkRequest& request, const SinkPlan& plan) {
 }
 
 }  // namespace
+
+void open_image_module() { image_module(); }
+bool image_module_is_open() { return is_open; }
 
 ImageFile read_image(const std::string& path, std::string_view name, int subimage) {
   return image_module().read(path, name, subimage);

@@ -12,6 +12,10 @@
 
 namespace frustum {
 
+// Opens the library now, which costs some 200 ms, and tells whether it is open. Throws WorldError("no_image_module").
+void open_image_module();
+bool image_module_is_open();
+
 // A picture as its file says it: planes in the file's order, colours not converted.
 struct ImageFile {
   // Planes: f32, u32 for 32-bit unsigned channels. "R" "G" "B" "A" are colour, a grey picture has R = G =

@@ -5,7 +5,7 @@
 #include "runtime/app/metrics/metrics.h"
 #include "runtime/app/session.h"
 #include "runtime/app/simd.h"
-#include "runtime/app/suite.h"
+#include "runtime/app/suite/suite.h"
 #include "runtime/buffers/mesh.h"
 
 #include <fmt/format.h>

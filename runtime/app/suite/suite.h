@@ -1,42 +1,36 @@
 // A suite file: graphs, the settings to run them with, and what has to hold of their buffers.
 #pragma once
 
+#include "runtime/app/suite/check.h"
 #include "runtime/core/diagnostic.h"
-#include "runtime/graph/load.h"
 
+#include <chrono>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace frustum {
 
-// One value of a buffer of pixels.
-struct Probe {
-  int x = 0, y = 0, sample = 0;
-  std::string plane;  // empty: the first
-  double equals = 0, abs = 0;
-};
-
-// What has to hold of one port. Every number of it has to be finite, whatever else is asked.
-struct SuiteCheck {
-  std::string port;
-  bool golden = false;  // compared with what was accepted
-  std::string same_as;  // or with another port of the same run
-  bool exact = false;
-  std::optional<double> abs, max, rmse;
-  double fraction = 1;  // share of the values for which abs has to hold
-  std::optional<Probe> probe;
-  std::string shape;  // JSON object: entries of the summary; empty: not asked
-  std::string why;
-
-  bool has_tolerance() const { return abs || max || rmse; }
-};
-
 // A diagnostic that loading or running has to give; empty texts and zeros match anything.
 struct ExpectedProblem {
   std::string code, pointer, suggestion;
   int line = 0, column = 0;
   bool matches(const Diagnostic&) const;
+};
+
+// What a run may cost. Bytes and counters are the same on every machine and fail; time only says so.
+struct Budget {
+  std::optional<std::uint64_t> bytes;             // live at once, at the peak
+  std::map<std::string, std::uint64_t> counters;  // "triangles_clipped", or "cut:triangles_clipped" of one node
+  std::optional<std::chrono::nanoseconds> time;
+};
+
+// A failure that is known: it does not count until the date has passed. Then it counts, whatever the case does.
+struct Waiver {
+  std::string until;  // "2026-12-31", the last day (UTC)
+  std::string why;
 };
 
 // One run: presets are resolved, one combination of the matrix is chosen, one file of the pattern is taken.
@@ -48,15 +42,24 @@ struct SuiteCase {
   std::vector<SuiteCheck> checks;
   std::vector<ExpectedProblem> expected;
   std::vector<std::string> tags;
+  Budget budget;
+  std::optional<Waiver> waiver;
+  std::string skip;              // why it is not run; empty: it is
+  std::optional<double> timeout;  // seconds, instead of the run's
+  int retry = 0;                 // further attempts after one that did not pass
 };
 
 struct Suite {
   std::string file, name;  // "tests/suites/gallery.json", "gallery"
+  std::string title;
   std::vector<SuiteCase> cases;
 };
 
 // Null where a problem is an error; problems have file, line and column. Throws WorldError where the file
-// cannot be read.
+// cannot be read. Cost: linear in the text and the number of cases, of which a file may have 100,000.
 std::optional<Suite> load_suite(const std::string& path, Diagnostics& problems);
+
+// JSON Schema (draft 2020-12) of suite files, from the declarations that the reader reads by.
+Json suite_schema();
 
 }  // namespace frustum
