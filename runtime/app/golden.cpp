@@ -92,7 +92,8 @@ void GoldenBook::save_pixels(const Raster& raster, const std::string& path) {
 Json GoldenBook::values(const Golden& golden) const {
   const fs::path path = folder_ / (golden.digest + values_end);
   Json values = Json::parse(read_text(path), nullptr, false);
-  if (values.is_discarded()) throw WorldError("bad_golden", fmt::format("{} is no JSON", path.generic_string()));
+  if (values.is_discarded())
+    throw WorldError("bad_golden", fmt::format("{} is no JSON", path.generic_string()));
   return values;
 }
 

@@ -1,5 +1,5 @@
-// Accepted results: one book per suite that names the digest of each, and for what is compared with a tolerance a
-// file to measure against.
+// Accepted results: one book per suite that names the digest of each, and for what is compared with a
+// tolerance a file to measure against.
 #pragma once
 
 #include "runtime/core/buffer.h"
@@ -28,9 +28,9 @@ class GoldenBook {
   const std::filesystem::path& folder() const { return folder_; }
   const Golden* find(std::string_view key) const;
 
-  // FOLDER/DIGEST.exr: pixels as floats and ids, several samples of a pixel below each other. They are read back
-  // with the samples, colour space and alpha of `like`, where the size fits. Throws WorldError where the file
-  // cannot be read.
+  // FOLDER/DIGEST.exr: pixels as floats and ids, several samples of a pixel below each other. They are read
+  // back with the samples, colour space and alpha of `like`, where the size fits. Throws WorldError where
+  // the file cannot be read.
   bool has_pixels(const Golden& golden) const;
   Raster pixels(const Golden& golden, const Frame& like) const;
   static void save_pixels(const Raster& raster, const std::string& path);
@@ -38,8 +38,8 @@ class GoldenBook {
   bool has_values(const Golden& golden) const;
   Json values(const Golden& golden) const;
 
-  // Records a digest under `key`, with this version; `staged` (may be empty) is the file with its numbers, which
-  // becomes FOLDER/DIGEST with the same extension.
+  // Records a digest under `key`, with this version; `staged` (may be empty) is the file with its numbers,
+  // which becomes FOLDER/DIGEST with the same extension.
   void accept(const std::string& key, const std::string& digest, const std::string& reason,
               const std::filesystem::path& staged);
   // Writes the book where something was accepted, and removes stored numbers that no book of the folder names

@@ -39,7 +39,8 @@ std::vector<PortRef> named_ports(const Graph& graph) {
 
 }  // namespace
 
-Session::Session() : registry_(all_node_types()) {}
+Session::Session() : Session(Registry(all_node_types())) {}
+Session::Session(Registry registry) : registry_(std::move(registry)) {}
 
 Loaded Session::load(const std::string& path, LoadOptions options) const {
   if (options.library_folders.empty()) options.library_folders = library_folders(path);

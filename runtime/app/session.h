@@ -15,8 +15,8 @@ namespace frustum {
 
 class Session {
  public:
-  // Every node type of this build.
-  Session();
+  Session();  // with every node type of this build
+  explicit Session(Registry registry);
 
   const Registry& registry() const { return registry_; }
   MemoryCache& cache() { return cache_; }

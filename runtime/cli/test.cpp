@@ -53,7 +53,8 @@ class ScratchFolder {
 
 Shard shard_of(const std::string& text) {
   const auto slash = text.find('/');
-  if (slash == std::string::npos) throw UsageError(fmt::format("--shard {}: expected I/N, such as 2/8", text));
+  if (slash == std::string::npos)
+    throw UsageError(fmt::format("--shard {}: expected I/N, such as 2/8", text));
   const int index = integers("--shard", text.substr(0, slash), 1).front();
   const int count = integers("--shard", text.substr(slash + 1), 1).front();
   if (count < 1 || index < 1 || index > count)
@@ -64,26 +65,29 @@ Shard shard_of(const std::string& text) {
 std::size_t proposals(const std::vector<CaseResult>& results) {
   std::size_t n = 0;
   for (const CaseResult& r : results)
-    n += static_cast<std::size_t>(std::count_if(r.accepted.begin(), r.accepted.end(), [](const auto& c) { return !c.trace; }));
+    n += static_cast<std::size_t>(
+        std::count_if(r.accepted.begin(), r.accepted.end(), [](const auto& c) { return !c.trace; }));
   return n;
 }
 
 // On a terminal somebody looks at what stands above before it is recorded.
 bool confirmed(const Arguments& args, std::size_t goldens) {
   if (args.yes || ::isatty(STDIN_FILENO) != 1 || ::isatty(STDOUT_FILENO) != 1) return true;
-  print(fmt::format("accept {}? [y/N] ", goldens == 1 ? "this golden" : fmt::format("these {} goldens", goldens)));
+  print(fmt::format("accept {}? [y/N] ",
+                    goldens == 1 ? "this golden" : fmt::format("these {} goldens", goldens)));
   std::string answer;
   return std::getline(std::cin, answer) && (answer == "y" || answer == "yes");
 }
 
-void accept(const Arguments& args, const std::vector<Suite>& suites, const std::vector<CaseResult>& results, bool json) {
+void accept(const Arguments& args, const std::vector<Suite>& suites, const std::vector<CaseResult>& results,
+            bool json) {
   const std::size_t goldens = proposals(results);
   if (args.review) {
     if (!json) print(fmt::format("{} goldens would be accepted\n", goldens));
     return;
   }
   if (goldens > 0 && !confirmed(args, goldens)) {
-    print("nothing was accepted\n");
+    print(std::string("nothing was accepted\n"));
     return;
   }
   record_goldens(suites, results, args.reason);
@@ -121,7 +125,8 @@ int test(Arguments& args, bool json) {
     print(to_json(results));
   else
     print(summary_text(results));
-  const bool good = std::none_of(results.begin(), results.end(), [](const auto& r) { return counts_against(r.verdict); });
+  const bool good =
+      std::none_of(results.begin(), results.end(), [](const auto& r) { return counts_against(r.verdict); });
   return good ? done : check_failed;
 }
 
@@ -131,7 +136,8 @@ void add_selection(CLI::App& c, Arguments& args) {
                "Only cases with this id or tag; * and ? are wild, a leading ! leaves out; repeatable.")
       ->type_name("GLOB")
       ->allow_extra_args(false);
-  c.add_option("--shard", args.shard, "Only part I of N; the parts are the same on every machine.")->type_name("I/N");
+  c.add_option("--shard", args.shard, "Only part I of N; the parts are the same on every machine.")
+      ->type_name("I/N");
 }
 
 void add_running(CLI::App& c, Arguments& args) {
@@ -141,17 +147,20 @@ void add_running(CLI::App& c, Arguments& args) {
   c.add_option("--threads", args.options.threads, "Threads of each case; 0 shares the processors.")
       ->check(quiet(CLI::Range(0, 4096)))
       ->type_name("N");
-  c.add_option("--timeout", args.options.timeout, "Seconds after which a case that says nothing else is ended.")
+  c.add_option("--timeout", args.options.timeout,
+               "Seconds after which a case that says nothing else is ended.")
       ->check(quiet(CLI::PositiveNumber))
       ->type_name("SECONDS");
-  c.add_option("--retry", args.options.retry, "Further attempts of a case that does not pass; if one does, it is flaky.")
+  c.add_option("--retry", args.options.retry,
+               "Further attempts of a case that does not pass; if one does, it is flaky.")
       ->check(quiet(CLI::Range(0, 10)))
       ->type_name("N");
   c.add_flag("--no-isolation", args.here, "Runs the cases in this process, for a debugger.");
 }
 
 void add_results(CLI::App& c, Arguments& args) {
-  c.add_flag("--accept", args.accept, "Shows the goldens of the chosen cases that are new or differ, and records them.");
+  c.add_flag("--accept", args.accept,
+             "Shows the goldens of the chosen cases that are new or differ, and records them.");
   c.add_flag("--review", args.review, "Shows what --accept would record, and records nothing.");
   c.add_flag("--yes", args.yes, "Does not ask before it accepts.");
   c.add_option("--reason", args.reason, "Why, kept with what is accepted.")->type_name("TEXT");
@@ -162,10 +171,10 @@ void add_results(CLI::App& c, Arguments& args) {
 
 void add_test(CLI::App& app, Invocation& chosen) {
   auto args = std::make_shared<Arguments>();
-  CLI::App& c = add_command(app, chosen, "test",
-                            "Runs suites: graphs, settings, and what has to hold of their buffers.",
-                            "frustum test tests/suites/gallery.json --filter 'pictures/*' --junit results.xml",
-                            [args, &chosen] { return test(*args, chosen.json); });
+  CLI::App& c = add_command(
+      app, chosen, "test", "Runs suites: graphs, settings, and what has to hold of their buffers.",
+      "frustum test tests/suites/gallery.json --filter 'pictures/*' --junit results.xml",
+      [args, &chosen] { return test(*args, chosen.json); });
   add_selection(c, *args);
   add_running(c, *args);
   add_results(c, *args);

@@ -12,7 +12,8 @@
 
 namespace frustum {
 
-// Opens the library now, which costs some 200 ms, and tells whether it is open. Throws WorldError("no_image_module").
+// Opens the library now, which costs some 200 ms, and tells whether it is open. Throws
+// WorldError("no_image_module").
 void open_image_module();
 bool image_module_is_open();
 

@@ -25,16 +25,20 @@ class Source {
     else if (name == "row")
       place_ = row_number;
     if (series_ == nullptr && place_ < 0)
-      throw NodeError("no_series", fmt::format("'{}' is neither a plane nor a number of a column; there are {}", name,
-                                               fmt::join(v.names(), ", ")));
+      throw NodeError("no_series",
+                      fmt::format("'{}' is neither a plane nor a number of a column; there are {}", name,
+                                  fmt::join(v.names(), ", ")));
   }
 
   std::size_t rows() const { return series_ != nullptr ? series_->rows() : 0; }
   double at(std::size_t row) const {
-    if (series_ != nullptr) return series_->values[row * static_cast<std::size_t>(series_->width) + component_];
+    if (series_ != nullptr)
+      return series_->values[row * static_cast<std::size_t>(series_->width) + component_];
     if (place_ == row_number) return static_cast<double>(row);
-    const auto width = static_cast<std::size_t>(v_.window->width()), height = static_cast<std::size_t>(v_.window->height());
-    const double column = static_cast<double>(row % width) + 0.5, line = static_cast<double>(row / width % height) + 0.5;
+    const auto width = static_cast<std::size_t>(v_.window->width()),
+               height = static_cast<std::size_t>(v_.window->height());
+    const double column = static_cast<double>(row % width) + 0.5,
+                 line = static_cast<double>(row / width % height) + 0.5;
     switch (place_) {
       case 0: return v_.window->x0 + column;
       case 1: return v_.window->y0 + line;
@@ -51,7 +55,9 @@ class Source {
   void find_component(const std::string& column, char letter) {
     const auto k = std::string_view("xyzw").find(letter);
     const Series* s = v_.find(column);
-    if (column.empty() || s == nullptr || k == std::string_view::npos || k >= static_cast<std::size_t>(s->width)) return;
+    if (column.empty() || s == nullptr || k == std::string_view::npos ||
+        k >= static_cast<std::size_t>(s->width))
+      return;
     series_ = s, component_ = k;
   }
 
@@ -77,7 +83,8 @@ class Formula {
   std::size_t rows(std::size_t known) const {
     for (const Source& s : sources_) {
       if (s.rows() == 0 || s.rows() == known) continue;
-      if (known != 0) throw NodeError("wrong_length", "the columns of the expressions have different lengths");
+      if (known != 0)
+        throw NodeError("wrong_length", "the columns of the expressions have different lengths");
       known = s.rows();
     }
     return known;
@@ -104,10 +111,12 @@ std::vector<Judged> judge_analytic(const Analytic& a, const Buffer& buffer) {
   double worst = -1;
   std::string place;
   for (std::size_t row = 0; row < rows; ++row) {
-    if (where.at(row) == 0) continue;  // NaN counts as a place, and then fails
+    const double here = where.at(row);
+    if (here == 0) continue;
     ++seen;
     const double x = value.at(row), expected = equals.at(row);
-    if (x == expected || close(x, expected, a.close, NumberKind::f64)) continue;
+    const bool held = x == expected || close(x, expected, a.close, NumberKind::f64);
+    if (held && !std::isnan(here)) continue;
     ++wrong;
     const double distance = std::isnan(x - expected) ? HUGE_VAL : std::abs(x - expected);
     if (distance <= worst) continue;
@@ -116,11 +125,15 @@ std::vector<Judged> judge_analytic(const Analytic& a, const Buffer& buffer) {
     place = fmt::format("{:.9g}, expected {:.9g}, in the row of {}", x, expected,
                         v.place(first, row * static_cast<std::size_t>(first.width)));
   }
-  Judged j{{"", "analytic", fmt::format("{} of {} rows are off", wrong, seen), a.value + " = " + a.equals, wrong == 0 && seen > 0}, ""};
+  Judged j{{"", "analytic", fmt::format("{} of {} rows are off", wrong, seen), a.value + " = " + a.equals,
+            wrong == 0 && seen > 0},
+           ""};
   if (seen == 0)
-    j.sentence = fmt::format("'{}' holds nowhere, so that nothing was checked", a.where.empty() ? "1" : a.where);
+    j.sentence =
+        fmt::format("'{}' holds nowhere, so that nothing was checked", a.where.empty() ? "1" : a.where);
   else if (wrong != 0)
-    j.sentence = fmt::format("{} is not {} in {} of {} rows; worst is {}", a.value, a.equals, wrong, seen, place);
+    j.sentence =
+        fmt::format("{} is not {} in {} of {} rows; worst is {}", a.value, a.equals, wrong, seen, place);
   return {std::move(j)};
 }
 

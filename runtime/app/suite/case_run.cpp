@@ -48,8 +48,10 @@ void CaseRun::check_finite(const std::string& name, const Buffer& buffer) {
   take(name, "finite", [&]() -> std::vector<Judged> {
     const Health h = buffer.health();
     const auto infinite = h.positive_infinity + h.negative_infinity;
-    return {one("finite", h.finite(), fmt::format("{} NaN, {} infinite", h.nan, infinite), fmt::format("{} values", h.values),
-                fmt::format("{} NaN, {} infinite of {} values; the first: {}", h.nan, infinite, h.values, h.first))};
+    return {one(
+        "finite", h.finite(), fmt::format("{} NaN, {} infinite", h.nan, infinite),
+        fmt::format("{} values", h.values),
+        fmt::format("{} NaN, {} infinite of {} values; the first: {}", h.nan, infinite, h.values, h.first))};
   });
 }
 
@@ -57,10 +59,12 @@ std::vector<Judged> CaseRun::judge_alike(const SuiteCheck& check, const Buffer& 
                                          const std::string& what) {
   const bool same = mine.digest() == other.digest();
   if (!check.likeness.bounded())
-    return {one("exact", same, same ? "the same" : "differs", what, fmt::format("it is not the same as {}", what))};
+    return {one("exact", same, same ? "the same" : "differs", what,
+                fmt::format("it is not the same as {}", what))};
   if (&mine.type() != &other.type())
-    return {one("kind", false, std::string(mine.type().name), std::string(other.type().name),
-                fmt::format("it is a {}, and {} is a {}", mine.type().name, what, other.type().name))};
+    return {
+        one("kind", false, std::string(mine.type().name), std::string(other.type().name),
+            fmt::format("it is of kind {}, and {} of kind {}", mine.type().name, what, other.type().name))};
   if (const Raster* raster = pixels(mine)) {
     auto judged = against(what, judge_pixels(check.likeness, *raster, *pixels(other)));
     return judged;
@@ -68,14 +72,16 @@ std::vector<Judged> CaseRun::judge_alike(const SuiteCheck& check, const Buffer& 
   return against(what, judge_values(check.likeness, values_of(mine), values_of(other)));
 }
 
-void CaseRun::check_alike(const SuiteCheck& check, const Buffer& mine, const Buffer& other, const std::string& what) {
+void CaseRun::check_alike(const SuiteCheck& check, const Buffer& mine, const Buffer& other,
+                          const std::string& what) {
   const std::size_t before = result_.failures.size();
   take(check.port, "same as " + what, [&] { return judge_alike(check, mine, other, what); });
-  if (pixels(mine) != nullptr) keep_pictures(check, mine, pixels(other), what, result_.failures.size() == before);
+  if (pixels(mine) != nullptr)
+    keep_pictures(check, mine, pixels(other), what, result_.failures.size() == before);
 }
 
-void CaseRun::check_related(const SuiteCheck& check, const Buffer& own, const Buffer& changed, const Relation& relation,
-                            const std::string& what) {
+void CaseRun::check_related(const SuiteCheck& check, const Buffer& own, const Buffer& changed,
+                            const Relation& relation, const std::string& what) {
   RelatedPair pair{changed, own};
   bool good = true;
   if (check.metamorphic)
@@ -127,7 +133,8 @@ std::vector<Judged> CaseRun::judge_golden(const SuiteCheck& check, const Buffer&
     if (!check.likeness.bounded()) keep_pictures(check, buffer, &reference, "the accepted one", false);
     if (check.likeness.bounded()) {
       auto judged = against("the accepted one", judge_pixels(check.likeness, *raster, reference));
-      const bool held = std::all_of(judged.begin(), judged.end(), [](const Judged& j) { return j.outcome.held; });
+      const bool held =
+          std::all_of(judged.begin(), judged.end(), [](const Judged& j) { return j.outcome.held; });
       keep_pictures(check, buffer, &reference, "the accepted one", held);
       return judged;
     }
@@ -144,7 +151,8 @@ std::string CaseRun::change_of(const Golden& old, const Buffer& buffer) const {
   const Raster* raster = pixels(buffer);
   if (raster == nullptr || !book_.has_pixels(old)) return change;
   const Difference d = compare(*raster, book_.pixels(old, raster->frame()));
-  return change + (d.mismatch.empty() ? fmt::format(", rmse {:.3g}, max {:.3g}", d.rmse, d.max) : ", " + d.mismatch);
+  return change +
+         (d.mismatch.empty() ? fmt::format(", rmse {:.3g}, max {:.3g}", d.rmse, d.max) : ", " + d.mismatch);
 }
 
 void CaseRun::propose(const std::string& key, const SuiteCheck& check, const Buffer& buffer) {
@@ -172,14 +180,17 @@ void CaseRun::name_first_divergence(const Graph& graph, const std::map<PortRef, 
   for (const auto& [port, buffer] : buffers) {  // in running order
     const std::string name = graph.name(port);
     const auto own = golden_ports_.find(port);
-    const std::string key = trace_ && own == golden_ports_.end() ? trace_key(name) : own == golden_ports_.end() ? "" : own->second;
+    const std::string key = trace_ && own == golden_ports_.end() ? trace_key(name)
+                            : own == golden_ports_.end()         ? ""
+                                                                 : own->second;
     if (key.empty()) continue;
     const Golden* golden = book_.find(key);
     const std::string digest = to_hex(buffer.digest());
     if (golden != nullptr && golden->digest == digest) continue;
     if (propose) {
       if (own == golden_ports_.end())
-        result_.accepted.push_back({key, digest, golden == nullptr ? "new" : "was " + golden->digest, "", true});
+        result_.accepted.push_back(
+            {key, digest, golden == nullptr ? "new" : "was " + golden->digest, "", true});
     } else if (golden != nullptr) {
       result_.failures.push_back(fmt::format("the first port that is not what was accepted: {}", name));
       return;
@@ -189,8 +200,8 @@ void CaseRun::name_first_divergence(const Graph& graph, const std::map<PortRef, 
 
 // ----- pictures
 
-void CaseRun::keep_pictures(const SuiteCheck& check, const Buffer& mine, const Raster* reference, const std::string& against,
-                            bool held) {
+void CaseRun::keep_pictures(const SuiteCheck& check, const Buffer& mine, const Raster* reference,
+                            const std::string& against, bool held) {
   if (options_.evidence.empty() || (held && !options_.evidence_of_all)) return;
   const auto save = [&](const Raster& raster, const char* what) {
     const std::string name =
@@ -198,7 +209,8 @@ void CaseRun::keep_pictures(const SuiteCheck& check, const Buffer& mine, const R
     save_raster(one_sample(raster, 0), (std::filesystem::path(options_.evidence) / name).string());
     return name;
   };
-  PictureEvidence p{check.port, against, save(*pixels(mine), "output"), ""};
+  PictureEvidence p{check.port, against, save(*pixels(mine), "output"), "",
+                    pixels(mine)->frame().color_space};
   if (reference != nullptr) p.reference = save(*reference, "reference");
   result_.pictures.push_back(std::move(p));
 }

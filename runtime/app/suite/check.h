@@ -21,7 +21,8 @@ namespace frustum {
 struct Closeness {
   std::optional<double> abs;  // |a - b|
   std::optional<double> rel;  // |a - b| / |b|, b being what is expected
-  std::optional<double> ulp;  // representable numbers from one to the other, in the kind in which they are stored
+  std::optional<double>
+      ulp;  // representable numbers from one to the other, in the kind in which they are stored
   bool given() const { return abs || rel || ulp; }
   bool above_zero() const { return abs.value_or(0) > 0 || rel.value_or(0) > 0 || ulp.value_or(0) > 0; }
 };
@@ -30,7 +31,7 @@ struct Closeness {
 struct Likeness {
   bool exact = false;
   Closeness close;
-  double fraction = 1;  // share of the values for which `close` has to hold
+  double fraction = 1;                                  // share of the values for which `close` has to hold
   std::optional<std::pair<double, double>> percentile;  // of |a - b|: which (0 to 100), and what it may be
   std::vector<MetricBound> metrics;
   bool bounded() const { return close.given() || percentile || !metrics.empty(); }
@@ -48,9 +49,9 @@ struct OtherRun {
 struct Relation {
   enum class Kind : std::uint8_t { same, mirror_x, mirror_y, rotate_180, shift, times, matrix };
   Kind kind = Kind::same;
-  glm::ivec2 shift{0};      // pixels to the right and down; compared where both have pixels
-  double times = 1;         // every real number
-  glm::dmat4 matrix{1};     // of positions in object or world space
+  glm::ivec2 shift{0};   // pixels to the right and down; compared where both have pixels
+  double times = 1;      // every real number but alpha
+  glm::dmat4 matrix{1};  // of positions in object or world space
 };
 
 struct Metamorphic {
@@ -62,11 +63,11 @@ struct Metamorphic {
 struct Probe {
   enum class At : std::uint8_t { pixel, region, row };
   At at = At::pixel;
-  std::array<int, 4> region{};  // x, y, width, height; a pixel is 1 x 1
-  std::optional<int> sample;    // all, if left out
-  std::size_t row = 0;          // of a column or of a table
-  std::string series;           // plane or column; empty: the first
-  std::vector<double> equals;   // one number for all, or one for each of a row's
+  std::array<int, 4> region{};                       // x, y, width, height; a pixel is 1 x 1
+  std::optional<int> sample;                         // all, if left out
+  std::size_t row = 0;                               // of a column or of a table
+  std::string series;                                // plane or column; empty: the first
+  std::vector<double> equals;                        // one number for all, or one for each of a row's
   std::optional<std::pair<double, double>> between;  // instead of `equals`
   Closeness close;
 };

@@ -12,8 +12,8 @@ namespace {
 
 using Matrix = std::map<std::string, std::vector<std::string>>;
 
-void combine(Matrix::const_iterator axis, Matrix::const_iterator end, const SuiteCase& c, const std::string& chosen,
-             std::vector<SuiteCase>& out) {
+void combine(Matrix::const_iterator axis, Matrix::const_iterator end, const SuiteCase& c,
+             const std::string& chosen, std::vector<SuiteCase>& out) {
   if (axis == end) {
     out.push_back(c);
     if (!chosen.empty()) out.back().id += "[" + chosen + "]";
@@ -47,7 +47,8 @@ Expanded expand(const std::string& pattern, const SuiteCase& base, const Variati
   }
   if (combinations > most) return Expanded::too_many;
   const auto star = pattern.find('*');
-  const fs::path fixed = star == std::string::npos ? fs::path() : fs::path(pattern.substr(0, star)).parent_path();
+  const fs::path fixed =
+      star == std::string::npos ? fs::path() : fs::path(pattern.substr(0, star)).parent_path();
   for (const fs::path& file : files) {
     SuiteCase c = base;
     c.graph = file.generic_string();

@@ -64,9 +64,9 @@ constexpr int max_depth = 100;
 
 template <class Table>
 std::size_t find(const Table& table, std::string_view name) {
-  return static_cast<std::size_t>(std::find_if(table.begin(), table.end(), [&](const auto& e) {
-                                    return e.name == name;
-                                  }) - table.begin());
+  return static_cast<std::size_t>(
+      std::find_if(table.begin(), table.end(), [&](const auto& e) { return e.name == name; }) -
+      table.begin());
 }
 
 bool starts_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }

@@ -19,7 +19,9 @@ using Broken = std::optional<std::string>;
 
 const Mesh& mesh_of(const Buffer& buffer) {
   const auto mesh = buffer.as<Mesh>();
-  if (!mesh) throw NodeError("wrong_kind", fmt::format("this law is about a mesh, and this is a {}", buffer.type().name));
+  if (!mesh)
+    throw NodeError("wrong_kind",
+                    fmt::format("this law is about meshes; this buffer is of kind {}", buffer.type().name));
   return *mesh;
 }
 
@@ -37,23 +39,26 @@ Broken edges_obey(const Buffer& buffer, Wrong wrong, const char* law) {
       if (count++ == 0) first = &e;
     }
   if (count == 0) return std::nullopt;
-  return fmt::format("{} of {} edges {}; the first: {}, {} faces one way and {} the other", count, edges.size(), law,
-                     shown(*first), first->forward, first->backward);
+  return fmt::format("{} of {} edges {}; the first: {}, {} faces one way and {} the other", count,
+                     edges.size(), law, shown(*first), first->forward, first->backward);
 }
 
 Broken watertight(const Buffer& b, const Buffer*, double) {
   if (mesh_of(b).faces() == 0) return "it has no faces";
-  return edges_obey(b, [](const MeshEdge& e) { return e.forward != 1 || e.backward != 1; },
-                    "do not have two faces of opposite direction");
+  return edges_obey(
+      b, [](const MeshEdge& e) { return e.forward != 1 || e.backward != 1; },
+      "do not have two faces of opposite direction");
 }
 
 Broken manifold(const Buffer& b, const Buffer*, double) {
-  return edges_obey(b, [](const MeshEdge& e) { return e.forward + e.backward > 2; }, "have more than two faces");
+  return edges_obey(
+      b, [](const MeshEdge& e) { return e.forward + e.backward > 2; }, "have more than two faces");
 }
 
 Broken winding(const Buffer& b, const Buffer*, double) {
-  return edges_obey(b, [](const MeshEdge& e) { return e.forward > 1 || e.backward > 1; },
-                    "are run in the same direction by two faces");
+  return edges_obey(
+      b, [](const MeshEdge& e) { return e.forward > 1 || e.backward > 1; },
+      "are run in the same direction by two faces");
 }
 
 // Six times the volume that the faces enclose, from the first vertex.
@@ -104,8 +109,8 @@ Broken within_bounds(const Buffer& b, const Buffer* other, double tolerance) {
   const Box inner = box_of(mesh_of(b)), outer = box_of(mesh_of(*other));
   for (std::size_t k = 0; k < 3; ++k)
     if (inner.low[k] < outer.low[k] - tolerance || inner.high[k] > outer.high[k] + tolerance)
-      return fmt::format("along {} it reaches from {:.9g} to {:.9g}, beyond {:.9g} to {:.9g}", "xyz"[k], inner.low[k],
-                         inner.high[k], outer.low[k], outer.high[k]);
+      return fmt::format("along {} it reaches from {:.9g} to {:.9g}, beyond {:.9g} to {:.9g}", "xyz"[k],
+                         inner.low[k], inner.high[k], outer.low[k], outer.high[k]);
   return std::nullopt;
 }
 
@@ -119,25 +124,29 @@ Broken numbers_obey(const Buffer& b, Wrong wrong, const char* law) {
   for (const Series& s : v.series) {
     all += s.values.size();
     for (std::size_t i = 0; i < s.values.size(); ++i)
-      if (wrong(s, s.values[i]) && count++ == 0) first = fmt::format("{} is {:.9g}", v.place(s, i), s.values[i]);
+      if (wrong(s, s.values[i]) && count++ == 0)
+        first = fmt::format("{} is {:.9g}", v.place(s, i), s.values[i]);
   }
   if (count == 0) return std::nullopt;
   return fmt::format("{} of {} numbers {}; the first: {}", count, all, law, first);
 }
 
 Broken unit_range(const Buffer& b, const Buffer*, double tolerance) {
-  return numbers_obey(b, [=](const Series&, double x) { return !(x >= -tolerance && x <= 1 + tolerance); },
-                      "are not in [0, 1]");
+  return numbers_obey(
+      b, [=](const Series&, double x) { return !(x >= -tolerance && x <= 1 + tolerance); },
+      "are not in [0, 1]");
 }
 
 Broken non_negative(const Buffer& b, const Buffer*, double tolerance) {
-  return numbers_obey(b, [=](const Series&, double x) { return !(x >= -tolerance); }, "are below 0");
+  return numbers_obey(
+      b, [=](const Series&, double x) { return !(x >= -tolerance); }, "are below 0");
 }
 
 Broken opaque(const Buffer& b, const Buffer*, double tolerance) {
   if (values_of(b).find("A") == nullptr) return "it has no plane A";
-  return numbers_obey(b, [=](const Series& s, double x) { return s.name == "A" && !(std::abs(x - 1) <= tolerance); },
-                      "of plane A are not 1");
+  return numbers_obey(
+      b, [=](const Series& s, double x) { return s.name == "A" && !(std::abs(x - 1) <= tolerance); },
+      "of plane A are not 1");
 }
 
 Broken partition_of_unity(const Buffer& b, const Buffer*, double tolerance) {
@@ -150,7 +159,8 @@ Broken partition_of_unity(const Buffer& b, const Buffer*, double tolerance) {
         if (row < s.rows()) sum.add(s.values[row * static_cast<std::size_t>(s.width) + k]);
     if (!(std::abs(sum.value() - 1) <= tolerance))
       return fmt::format("the numbers of {} add to {:.9g}",
-                         v.place(v.series.front(), row * static_cast<std::size_t>(v.series.front().width)), sum.value());
+                         v.place(v.series.front(), row * static_cast<std::size_t>(v.series.front().width)),
+                         sum.value());
   }
   return std::nullopt;
 }
@@ -175,7 +185,9 @@ Broken energy(const Buffer& b, const Buffer* other, double tolerance) {
 
 Broken orthonormal(const Buffer& b, const Buffer*, double tolerance) {
   const auto matrix = b.as<Matrix>();
-  if (!matrix) throw NodeError("wrong_kind", fmt::format("this law is about a matrix, and this is a {}", b.type().name));
+  if (!matrix)
+    throw NodeError("wrong_kind",
+                    fmt::format("this law is about matrices; this buffer is of kind {}", b.type().name));
   const glm::dmat4& m = matrix->value;
   for (int i = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j) {
@@ -187,13 +199,16 @@ Broken orthonormal(const Buffer& b, const Buffer*, double tolerance) {
 }
 
 constexpr std::array<InvariantType, 12> types{{
-    {"energy", "Each plane or column has the same sum as that of the port `of`; tolerance is relative.", true, energy},
+    {"energy", "Each plane or column has the same sum as that of the port `of`; tolerance is relative.", true,
+     energy},
     {"manifold", "No edge of the mesh has more than two faces.", false, manifold},
     {"non_negative", "No number is below zero.", false, non_negative},
     {"opaque", "Plane A is 1 everywhere.", false, opaque},
-    {"orthonormal", "The columns of the matrix's linear part are of unit length and perpendicular.", false, orthonormal},
+    {"orthonormal", "The columns of the matrix's linear part are of unit length and perpendicular.", false,
+     orthonormal},
     {"outward", "The faces of the mesh enclose a positive volume: they look outward.", false, outward},
-    {"partition_of_unity", "The planes of each pixel, or the numbers of each row, add to 1.", false, partition_of_unity},
+    {"partition_of_unity", "The planes of each pixel, or the numbers of each row, add to 1.", false,
+     partition_of_unity},
     {"unit_normals", "Every normal of the mesh has length 1.", false, unit_normals},
     {"unit_range", "Every number is in [0, 1].", false, unit_range},
     {"watertight", "Every edge of the mesh has two faces, one in each direction.", false, watertight},
@@ -206,7 +221,8 @@ constexpr std::array<InvariantType, 12> types{{
 std::span<const InvariantType> invariant_types() { return types; }
 
 const InvariantType* find_invariant(std::string_view name) {
-  const auto found = std::find_if(types.begin(), types.end(), [&](const InvariantType& t) { return t.name == name; });
+  const auto found =
+      std::find_if(types.begin(), types.end(), [&](const InvariantType& t) { return t.name == name; });
   return found != types.end() ? &*found : nullptr;
 }
 

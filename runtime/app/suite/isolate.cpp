@@ -29,7 +29,8 @@ class Descriptor {
  public:
   Descriptor() = default;
   explicit Descriptor(int fd) : fd_(fd) {
-    if (fd_ < 0) throw WorldError("no_process", fmt::format("cannot start a process: {}", std::strerror(errno)));
+    if (fd_ < 0)
+      throw WorldError("no_process", fmt::format("cannot start a process: {}", std::strerror(errno)));
   }
   ~Descriptor() {
     if (fd_ >= 0) ::close(fd_);
@@ -54,7 +55,8 @@ std::string content(const Descriptor& file, off_t most) {
   std::string text(static_cast<std::size_t>(std::max<off_t>(0, size - first)), '\0');
   std::size_t have = 0;
   while (have < text.size()) {
-    const ssize_t n = ::pread(file.get(), text.data() + have, text.size() - have, first + static_cast<off_t>(have));
+    const ssize_t n =
+        ::pread(file.get(), text.data() + have, text.size() - have, first + static_cast<off_t>(have));
     if (n <= 0) break;
     have += static_cast<std::size_t>(n);
   }
@@ -71,15 +73,16 @@ void write_all(int fd, const std::string& text) {
   }
 }
 
-// The life of a child from the fork to its end. Destructors of static objects do not run: threads of this process, which
-// are not there, might be waited for.
+// The life of a child from the fork to its end. Destructors of static objects do not run: threads of this
+// process, which are not there, might be waited for.
 [[noreturn]] void live(pid_t parent, int result, int said, const std::function<std::string()>& work) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(failed_with_exception);  // it ended before it could be told
   for (const int s : {SIGINT, SIGTERM}) ::signal(s, SIG_DFL);
   ::dup2(said, STDOUT_FILENO), ::dup2(said, STDERR_FILENO);
-  if (const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC); nothing >= 0) ::dup2(nothing, STDIN_FILENO);
+  if (const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC); nothing >= 0)
+    ::dup2(nothing, STDIN_FILENO);
   int code = 0;
   try {
     write_all(result, work());
@@ -92,7 +95,8 @@ void write_all(int fd, const std::string& text) {
 }
 
 std::string how_it_ended(const siginfo_t& info) {
-  if (info.si_code != CLD_EXITED) return fmt::format("signal {} ({})", info.si_status, ::strsignal(info.si_status));
+  if (info.si_code != CLD_EXITED)
+    return fmt::format("signal {} ({})", info.si_status, ::strsignal(info.si_status));
   if (info.si_status == failed_with_exception) return "an exception";
   return fmt::format("exit code {}", info.si_status);
 }
@@ -122,8 +126,12 @@ struct IsolatedProcesses::Process {
     }
     reaped = true;
     ::kill(-pid, SIGKILL);  // what it may have started
-    IsolatedEnd end{.tag = tag, .kind = IsolatedEnd::Kind::done, .result = {}, .how = {},
-                    .said = content(said, tail_bytes), .time = Clock::now() - began};
+    IsolatedEnd end{.tag = tag,
+                    .kind = IsolatedEnd::Kind::done,
+                    .result = {},
+                    .how = {},
+                    .said = content(said, tail_bytes),
+                    .time = Clock::now() - began};
     if (info.si_code == CLD_EXITED && info.si_status == 0)
       end.result = content(result, std::numeric_limits<off_t>::max());
     else
@@ -146,7 +154,8 @@ void IsolatedProcesses::start(std::size_t tag, std::chrono::nanoseconds timeout,
   std::fflush(nullptr);  // what is buffered here is not to be written twice
   const pid_t parent = ::getpid();
   const pid_t pid = ::fork();
-  if (pid < 0) throw WorldError("no_process", fmt::format("cannot start a process: {}", std::strerror(errno)));
+  if (pid < 0)
+    throw WorldError("no_process", fmt::format("cannot start a process: {}", std::strerror(errno)));
   if (pid == 0) live(parent, process->result.get(), process->said.get(), work);
   ::setpgid(pid, pid);  // in both, since either may be first
   process->pid = pid, process->reaped = false;
@@ -164,7 +173,8 @@ std::vector<IsolatedEnd> IsolatedProcesses::wait(const CancelFlag* cancel) {
       throw Cancelled();
     }
     std::vector<pollfd> handles;
-    auto until = Clock::now() + milliseconds(100);  // a signal between the check above and poll() waits no longer
+    auto until =
+        Clock::now() + milliseconds(100);  // a signal between the check above and poll() waits no longer
     for (const auto& p : running_) {
       handles.push_back({p->handle.get(), POLLIN, 0});
       if (!p->killed) until = std::min(until, p->deadline);

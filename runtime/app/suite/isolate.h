@@ -23,9 +23,10 @@ struct IsolatedEnd {
   std::chrono::nanoseconds time{0};
 };
 
-// Processes forked from this one, so that they start with everything that is loaded here. This one must never have started
-// a thread of ours: after a fork only the forking thread is left, and whoever waits for another waits for ever. Every process
-// leads a group of its own, which is killed as a whole; all end with this object and with this process, however that ends.
+// Processes forked from this one, so that they start with everything that is loaded here. This one must
+// never have started a thread of ours: after a fork only the forking thread is left, and whoever waits for
+// another waits for ever. Every process leads a group of its own, which is killed as a whole; all end with
+// this object and with this process, however that ends.
 class IsolatedProcesses {
  public:
   explicit IsolatedProcesses(std::size_t jobs);
@@ -36,11 +37,12 @@ class IsolatedProcesses {
   bool full() const;
   bool empty() const;
 
-  // Starts `work` under the name `tag`; its result comes back through wait(). An exception in it is a crash with its text.
-  // Throws WorldError where there are no more processes or descriptors to be had.
+  // Starts `work` under the name `tag`; its result comes back through wait(). An exception in it is a crash
+  // with its text. Throws WorldError where there are no more processes or descriptors to be had.
   void start(std::size_t tag, std::chrono::nanoseconds timeout, const std::function<std::string()>& work);
 
-  // Waits until one or more ended and gives them; kills those whose time is over. Throws Cancelled, all being killed first.
+  // Waits until one or more ended and gives them; kills those whose time is over. Throws Cancelled, all
+  // being killed first.
   std::vector<IsolatedEnd> wait(const CancelFlag* cancel);
 
  private:

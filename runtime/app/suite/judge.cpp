@@ -16,6 +16,8 @@ std::string shown(const Diagnostic& d) {
   return fmt::format("{} at {}:{}:{} {}: {}", d.code, d.file, d.line, d.column, d.pointer, d.message);
 }
 
+// Runs bypass the session's cache: what they cost must not depend on the cases before.
+
 // Work counters, by name and by node.
 class Counters : public Observer {
  public:
@@ -30,7 +32,8 @@ class Counters : public Observer {
 
 class Judge {
  public:
-  Judge(Session& session, const SuiteCase& c, const GoldenBook& book, const JudgeOptions& options, CaseResult& result)
+  Judge(Session& session, const SuiteCase& c, const GoldenBook& book, const JudgeOptions& options,
+        CaseResult& result)
       : session_(session), case_(c), run_(c, book, options, result), options_(options), result_(result) {}
 
   void judge() {
@@ -76,7 +79,7 @@ class Judge {
     if (!unknown.empty()) return;
     Counters counters;
     options.threads = options_.threads, options.cancel = options_.cancel, options.observer = &counters;
-    const RunResult r = session_.run(graph, options);
+    const RunResult r = session_.run(graph, options, false);
     if (r.end == RunResult::End::cancelled) throw Cancelled();
     problems.add(r.problems);
     if (r.end != RunResult::End::done) return;
@@ -88,7 +91,8 @@ class Judge {
   }
 
   static std::string to_sentence(const Diagnostic& d) {
-    return d.suggestions.empty() ? d.message : fmt::format("{}; did you mean '{}'?", d.message, d.suggestions.front());
+    return d.suggestions.empty() ? d.message
+                                 : fmt::format("{}; did you mean '{}'?", d.message, d.suggestions.front());
   }
 
   // Every error has to be expected, and everything expected has to be there.
@@ -96,7 +100,8 @@ class Judge {
     const auto& list = problems.list();
     for (const ExpectedProblem& e : case_.expected) {
       ++result_.checks;
-      const bool given = std::any_of(list.begin(), list.end(), [&](const Diagnostic& d) { return e.matches(d); });
+      const bool given =
+          std::any_of(list.begin(), list.end(), [&](const Diagnostic& d) { return e.matches(d); });
       result_.outcomes.push_back({"", "diagnostic", given ? "given" : "not given", e.code, given});
       if (!given)
         fail(fmt::format("expected the diagnostic {} at {}, which was not given", e.code,
@@ -118,7 +123,8 @@ class Judge {
     const auto judged = [&](const char* what, auto&& outcomes) { run_.take(check.port, what, outcomes); };
     if (!check.shape.empty()) judged("shape", [&] { return judge_shape(check.shape, buffer); });
     if (check.probe) judged("probe", [&] { return judge_probe(*check.probe, buffer); });
-    if (!check.statistics.empty()) judged("statistics", [&] { return judge_statistics(check.statistics, buffer); });
+    if (!check.statistics.empty())
+      judged("statistics", [&] { return judge_statistics(check.statistics, buffer); });
     if (check.analytic) judged("analytic", [&] { return judge_analytic(*check.analytic, buffer); });
     if (check.invariant)
       judged("invariant", [&] {
@@ -130,11 +136,13 @@ class Judge {
       run_.check_alike(check, buffer, buffer_of(check.same_as->port), check.same_as->port);
     else if (check.same_as)
       check_other_run(check, *check.same_as, {}, buffer);
-    if (check.metamorphic) check_other_run(check, check.metamorphic->run, check.metamorphic->relation, buffer);
+    if (check.metamorphic)
+      check_other_run(check, check.metamorphic->run, check.metamorphic->relation, buffer);
   }
 
   // Runs the other graph, or this one with other settings, for one port.
-  void check_other_run(const SuiteCheck& check, const OtherRun& other, const Relation& relation, const Buffer& own) {
+  void check_other_run(const SuiteCheck& check, const OtherRun& other, const Relation& relation,
+                       const Buffer& own) {
     const std::string what = check.metamorphic ? "the changed run" : "the other run";
     LoadOptions load;
     if (other.graph.empty()) load.settings = case_.settings, load.precision = case_.precision;
@@ -150,7 +158,7 @@ class Judge {
     if (!port) return;
     RunOptions options;
     options.demand.ports = {*port}, options.threads = options_.threads, options.cancel = options_.cancel;
-    const RunResult r = session_.run(*loaded.graph, options);
+    const RunResult r = session_.run(*loaded.graph, options, false);
     if (r.end == RunResult::End::cancelled) throw Cancelled();
     if (r.end != RunResult::End::done) {
       for (const Diagnostic& d : r.problems.list())
@@ -165,7 +173,8 @@ class Judge {
   void check_budget(const Counters& counters, std::uint64_t peak_bytes) {
     const auto within = [&](const std::string& what, std::uint64_t used, std::uint64_t most) {
       ++result_.checks;
-      result_.outcomes.push_back({"", what, std::to_string(used), fmt::format("at most {}", most), used <= most});
+      result_.outcomes.push_back(
+          {"", what, std::to_string(used), fmt::format("at most {}", most), used <= most});
       if (used > most) fail(fmt::format("{}: {} is above the budget of {}", what, used, most));
     };
     if (case_.budget.bytes) within("bytes", peak_bytes, *case_.budget.bytes);

@@ -61,7 +61,8 @@ void describe(Fields<Invariant>& f) {
 }
 
 void describe(Fields<Analytic>& f) {
-  f.field("value", &Analytic::value, "An expression over planes or columns, x, y, u and v: \"N.x^2 + N.y^2\".")
+  f.field("value", &Analytic::value,
+          "An expression over planes or columns, x, y, u and v: \"N.x^2 + N.y^2\".")
       .field("equals", &Analytic::equals, "What it is, an expression too.")
       .field("where", &Analytic::where, "Only where this is not zero: \"id < 4294967295\".")
       .field("abs", &Analytic::abs, "How far the value may be from it.", {.range = at_least(0)})
@@ -84,7 +85,7 @@ void describe(Fields<Metamorphic>& f) {
 
 void describe(Fields<Relation>& f) {
   f.field("shift", &Relation::shift, "Moved right and down.", {.unit = "px"})
-      .field("times", &Relation::times, "Every real number times this.")
+      .field("times", &Relation::times, "Every real number times this, but alpha.")
       .field("matrix", &Relation::matrix, "Positions transformed by it.");
   f.exactly_one();
 }
@@ -92,7 +93,8 @@ void describe(Fields<Relation>& f) {
 void describe(Fields<Check>& f) {
   f.field("port", &Check::port, "NODE.PORT, or an output by name.")
       .field("golden", &Check::golden, "Compared with what was accepted.")
-      .field("trace", &Check::trace, "Digests of all ports are accepted too, and the first that differs is named.")
+      .field("trace", &Check::trace,
+             "Digests of all ports are accepted too, and the first that differs is named.")
       .field("same_as", &Check::same_as, "Compared with another port of the run, or of another run.")
       .field("metamorphic", &Check::metamorphic, "The input changed, the output changes as expected.")
       .field("exact", &Check::exact, "Bit for bit; the default without a tolerance.")

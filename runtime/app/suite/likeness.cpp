@@ -17,9 +17,12 @@ std::string shown(const Difference& d) {
   return fmt::format(" ({}: {:.9g}, expected {:.9g})", d.worst->place(), d.worst->a, d.worst->b);
 }
 
-Judged judged(std::string check, bool held, std::string measured, std::string bound, const std::string& where = "") {
+Judged judged(std::string check, bool held, std::string measured, std::string bound,
+              const std::string& where = "") {
   Judged j{{"", std::move(check), std::move(measured), std::move(bound), held}, ""};
-  if (!held) j.sentence = fmt::format("{} {}, expected {}{}", j.outcome.check, j.outcome.measured, j.outcome.bound, where);
+  if (!held)
+    j.sentence =
+        fmt::format("{} {}, expected {}{}", j.outcome.check, j.outcome.measured, j.outcome.bound, where);
   return j;
 }
 
@@ -32,7 +35,8 @@ void judge_metrics(const Likeness& l, const Measured& m, std::vector<Judged>& ou
     std::string measured = fmt::format("{:.6g}", m.values.at(b.metric));
     if (!held && m.difference.wrong_ids != 0 && b.metric != "wrong_ids")
       measured += fmt::format(" with {} wrong ids", m.difference.wrong_ids);
-    out.push_back(judged(b.metric, held, measured, fmt::format("{} {:g}", metric.at_least ? "at least" : "at most", b.tolerance),
+    out.push_back(judged(b.metric, held, measured,
+                         fmt::format("{} {:g}", metric.at_least ? "at least" : "at most", b.tolerance),
                          shown(m.difference)));
   }
 }
@@ -53,12 +57,14 @@ std::string shown(const Closeness& c) {
 }
 
 bool same_shape(const Values& a, const Values& b) {
-  return std::equal(a.series.begin(), a.series.end(), b.series.begin(), b.series.end(), [](const Series& x, const Series& y) {
-    return x.name == y.name && x.width == y.width && x.values.size() == y.values.size();
-  });
+  return std::equal(a.series.begin(), a.series.end(), b.series.begin(), b.series.end(),
+                    [](const Series& x, const Series& y) {
+                      return x.name == y.name && x.width == y.width && x.values.size() == y.values.size();
+                    });
 }
 
-// Every number against its counterpart in the series of that name: how many are close, and how far each is away.
+// Every number against its counterpart in the series of that name: how many are close, and how far each is
+// away.
 void judge_numbers(const Likeness& l, const Values& mine, const Values& reference, std::vector<Judged>& out) {
   if (!l.close.given() && !l.percentile) return;
   std::vector<double> distances;
@@ -135,13 +141,15 @@ Json table_of(const Values& v) {
   std::size_t longest = 0;
   for (const Series& s : v.series) {
     longest = std::max(longest, s.rows());
-    for (int k = 0; k < s.width; ++k) columns.push_back(s.width == 1 ? s.name : fmt::format("{}.{}", s.name, "xyzw"[k]));
+    for (int k = 0; k < s.width; ++k)
+      columns.push_back(s.width == 1 ? s.name : fmt::format("{}.{}", s.name, "xyzw"[k]));
   }
   for (std::size_t row = 0; row < longest; ++row) {
     Json cells = Json::array();
     for (const Series& s : v.series)
       for (std::size_t k = 0; k < static_cast<std::size_t>(s.width); ++k)
-        cells.push_back(row < s.rows() ? json_number(s.values[row * static_cast<std::size_t>(s.width) + k]) : Json());
+        cells.push_back(row < s.rows() ? json_number(s.values[row * static_cast<std::size_t>(s.width) + k])
+                                       : Json());
     rows.push_back(std::move(cells));
   }
   return {{"columns", std::move(columns)}, {"rows", std::move(rows)}, {"total", longest}};
@@ -151,8 +159,10 @@ Json to_json(const Values& v) {
   Json series = Json::array();
   for (const Series& s : v.series) {
     Json values = Json::array();
-    for (const double x : s.values) values.push_back(s.kind == NumberKind::f32 ? json_number(static_cast<float>(x)) : json_number(x));
-    series.push_back({{"name", s.name}, {"kind", name_of(s.kind)}, {"width", s.width}, {"values", std::move(values)}});
+    for (const double x : s.values)
+      values.push_back(s.kind == NumberKind::f32 ? json_number(static_cast<float>(x)) : json_number(x));
+    series.push_back(
+        {{"name", s.name}, {"kind", name_of(s.kind)}, {"width", s.width}, {"values", std::move(values)}});
   }
   return {{"format", "frustum.values/1"}, {"series", std::move(series)}};
 }

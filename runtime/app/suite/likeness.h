@@ -24,7 +24,8 @@ std::vector<Judged> judge_values(const Likeness&, const Values& mine, const Valu
 // {"columns", "rows"}: the numbers as a table, columns of one series beside each other.
 Json table_of(const Values&);
 
-// Exact text forms of values, for goldens that are no pixels: {"series": [{"name", "kind", "width", "values"}]}.
+// Exact text forms of values, for goldens that are no pixels: {"series": [{"name", "kind", "width",
+// "values"}]}.
 Json to_json(const Values&);
 Values values_from_json(const Json&);
 

@@ -13,7 +13,8 @@ std::vector<std::uint32_t> places(const Mesh& mesh) {
   const int width = position.width();
   const auto coordinates = [&](std::uint32_t v) {
     std::array<double, 4> p{};
-    for (int k = 0; k < width; ++k) p[static_cast<std::size_t>(k)] = position.number(v, k) + 0.0;  // -0 becomes +0
+    for (int k = 0; k < width; ++k)
+      p[static_cast<std::size_t>(k)] = position.number(v, k) + 0.0;  // -0 becomes +0
     return p;
   };
   std::vector<std::array<double, 4>> at(position.rows());

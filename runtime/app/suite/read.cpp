@@ -141,13 +141,15 @@ class Reader {
         }
       });
       if (k.time)
-        budget.time = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(*k.time));
+        budget.time =
+            std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(*k.time));
     });
   }
 
   void read_waiver(const suite_keys::Waiver& k, SuiteCase& c) {
     at_.inside("waiver", [&] {
-      if (k.until.empty() || k.why.empty()) return parser_.missing("a waiver needs \"until\", a date, and \"why\"");
+      if (k.until.empty() || k.why.empty())
+        return parser_.missing("a waiver needs \"until\", a date, and \"why\"");
       if (!is_date(k.until))
         return at_.inside("until", [&] {
           at_.problem("bad_date", fmt::format("'{}' is no date", k.until), "YYYY-MM-DD", k.until);
@@ -162,7 +164,8 @@ class Reader {
     if (end == Expanded::no_file)
       at_.inside("graph", [&] { at_.problem("no_match", fmt::format("no file matches '{}'", pattern)); });
     if (end == Expanded::too_many)
-      at_.problem("too_many_cases", fmt::format("files and matrix make the suite larger than {} cases", most_cases));
+      at_.problem("too_many_cases",
+                  fmt::format("files and matrix make the suite larger than {} cases", most_cases));
     for (std::size_t i = first; i < suite.cases.size(); ++i)
       if (!ids_.insert(suite.cases[i].id).second)
         return at_.inside("id", [&] {
@@ -178,7 +181,8 @@ class Reader {
 
 }  // namespace
 
-void SuiteParser::inside(const char* key, const JsonText& json, const std::function<void(const Json&)>& body) {
+void SuiteParser::inside(const char* key, const JsonText& json,
+                         const std::function<void(const Json&)>& body) {
   if (!json.given()) return;
   const Json j = Json::parse(json.text);
   at.inside(key, [&] { body(j); });

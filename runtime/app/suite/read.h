@@ -14,7 +14,8 @@ namespace frustum {
 // Says what is wrong at the place where it is, and reads on.
 class SuiteParser {
  public:
-  SuiteParser(std::string folder, Diagnostics& problems) : at(problems, "", folder), folder(std::move(folder)) {}
+  SuiteParser(std::string folder, Diagnostics& problems)
+      : at(problems, "", folder), folder(std::move(folder)) {}
 
   // The members of an object as one of the structs of suite_keys; unknown ones are named with near ones.
   template <class Keys>
@@ -50,8 +51,8 @@ struct Variation {
   void override_with(const Variation& above);
 };
 
-// One case for every file that matches and every combination of the matrix, appended to `out`. False where no file
-// matches, or where they are more than `most`.
+// One case for every file that matches and every combination of the matrix, appended to `out`. False where
+// no file matches, or where they are more than `most`.
 enum class Expanded : std::uint8_t { done, no_file, too_many };
 Expanded expand(const std::string& pattern, const SuiteCase& base, const Variation&, std::size_t most,
                 std::vector<SuiteCase>& out);

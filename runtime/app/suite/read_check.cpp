@@ -88,9 +88,10 @@ class CheckReader {
 
   Relation read_relation(const Json& j) {
     using Kind = Relation::Kind;
-    static const std::vector<std::pair<std::string, Kind>> known{
-        {"same", Kind::same}, {"mirror_x", Kind::mirror_x}, {"mirror_y", Kind::mirror_y},
-        {"rotate_180", Kind::rotate_180}};
+    static const std::vector<std::pair<std::string, Kind>> known{{"same", Kind::same},
+                                                                 {"mirror_x", Kind::mirror_x},
+                                                                 {"mirror_y", Kind::mirror_y},
+                                                                 {"rotate_180", Kind::rotate_180}};
     Relation r;
     if (j.is_string()) {
       for (const auto& [name, kind] : known)
@@ -119,13 +120,15 @@ class CheckReader {
       if (probe.region[2] < 1 || probe.region[3] < 1)
         p_.at.inside("region", [&] { p_.at.problem("out_of_range", "a region has at least one pixel"); });
     }
-    if (k.row) probe.at = Probe::At::row, probe.row = static_cast<std::size_t>(std::max<std::int64_t>(*k.row, 0));
+    if (k.row)
+      probe.at = Probe::At::row, probe.row = static_cast<std::size_t>(std::max<std::int64_t>(*k.row, 0));
     if (k.row ? !k.plane.empty() || k.sample.has_value() : !k.column.empty())
       p_.conflict("pixels have \"plane\" and \"sample\", rows have \"column\"");
     probe.series = k.row ? k.column : k.plane, probe.sample = k.sample, probe.close = {k.abs, k.rel, k.ulp};
     p_.inside("equals", k.equals, [&](const Json& j) { read_numbers(j, probe.equals); });
     if (k.between) p_.at.inside("between", [&] { probe.between = interval(p_, *k.between); });
-    if (k.equals.given() == k.between.has_value()) p_.conflict("a probe needs \"equals\" or \"between\", one of them");
+    if (k.equals.given() == k.between.has_value())
+      p_.conflict("a probe needs \"equals\" or \"between\", one of them");
     if (k.between && probe.close.given()) p_.conflict("\"abs\", \"rel\" and \"ulp\" are about \"equals\"");
     c_.probe = probe;
   }
@@ -146,19 +149,22 @@ class CheckReader {
     std::string of;
     if (j.contains(series) && j[series].is_string()) of = j[series].get<std::string>();
     for (const auto& [name, value] : j.items())
-      if (name != series) p_.at.inside(name, [&, &name = name, &value = value] { read_statistic(of, name, value); });
+      if (name != series)
+        p_.at.inside(name, [&, &name = name, &value = value] { read_statistic(of, name, value); });
     if (j.size() == j.count(series)) p_.missing("statistics need one, such as \"mean\": [0.4, 0.6]");
   }
 
   void read_statistic(const std::string& of, const std::string& name, const Json& value) {
     static const std::vector<std::string> known{"min",   "max",   "mean",   "deviation", "sum",
                                                 "count", "plane", "column", "p50"};
-    const bool percentile = name.size() > 1 && name[0] == 'p' && std::all_of(name.begin() + 1, name.end(), [](char c) {
-                              return c >= '0' && c <= '9';
-                            }) && name.size() <= 4 && std::stoi(name.substr(1)) <= 100;
+    const bool percentile =
+        name.size() > 1 && name[0] == 'p' &&
+        std::all_of(name.begin() + 1, name.end(), [](char c) { return c >= '0' && c <= '9'; }) &&
+        name.size() <= 4 && std::stoi(name.substr(1)) <= 100;
     if (!percentile && std::find(known.begin(), known.end() - 3, name) == known.end() - 3)
       return p_.at.problem("unknown_key", fmt::format("'{}' is no statistic", name),
-                           "min, max, mean, deviation, sum, count, or p0 to p100", name, nearest_names(name, known));
+                           "min, max, mean, deviation, sum, count, or p0 to p100", name,
+                           nearest_names(name, known));
     std::array<double, 2> ends{};
     const bool one = value.is_number();
     const bool two = value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number();
@@ -189,7 +195,8 @@ class CheckReader {
 
   void read_analytic(const suite_keys::Analytic& k) {
     if (k.value.empty() || k.equals.empty()) p_.missing("an analytic check needs \"value\" and \"equals\"");
-    for (const auto& [key, text] : {std::pair{"value", &k.value}, {"equals", &k.equals}, {"where", &k.where}}) {
+    for (const auto& [key, text] :
+         {std::pair{"value", &k.value}, {"equals", &k.equals}, {"where", &k.where}}) {
       std::string problem;
       if (!text->empty() && !Expression::parse(*text, problem))
         p_.at.inside(key, [&] { p_.at.problem("bad_expression", problem); });
@@ -202,12 +209,14 @@ class CheckReader {
   void judge_together() {
     const Likeness& l = c_.likeness;
     const int against = (c_.golden ? 1 : 0) + (c_.same_as ? 1 : 0) + (c_.metamorphic ? 1 : 0);
-    if (against > 1) p_.conflict("a check compares with one thing: \"golden\", \"same_as\" or \"metamorphic\"");
+    if (against > 1)
+      p_.conflict("a check compares with one thing: \"golden\", \"same_as\" or \"metamorphic\"");
     if (against == 0 && (l.bounded() || l.exact))
       p_.missing("a tolerance compares with something: \"golden\": true, \"same_as\" or \"metamorphic\"");
     if (l.exact && l.bounded()) p_.conflict("\"exact\" leaves no tolerance");
     if (l.fraction < 1 && !l.close.given())
-      p_.conflict("\"fraction\" says for how many values \"abs\", \"rel\" or \"ulp\" holds: one of them is missing");
+      p_.conflict(
+          "\"fraction\" says for how many values \"abs\", \"rel\" or \"ulp\" holds: one of them is missing");
     if (c_.trace && !c_.golden) p_.conflict("\"trace\" goes with \"golden\": true");
     if (above_zero() && c_.why.empty()) p_.missing("a tolerance above zero needs a \"why\"");
   }

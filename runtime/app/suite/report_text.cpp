@@ -50,24 +50,28 @@ const char* color_of(Verdict v) {
 std::string junit_case(const CaseResult& r) {
   const std::string head = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.6f}\"",
                                        xml(r.suite), xml(r.id), seconds(r.time));
-  const std::string notes =
-      r.notes.empty() ? "" : fmt::format("      <system-out>{}</system-out>\n", xml(fmt::format("{}", fmt::join(r.notes, "\n"))));
+  const std::string notes = r.notes.empty() ? ""
+                                            : fmt::format("      <system-out>{}</system-out>\n",
+                                                          xml(fmt::format("{}", fmt::join(r.notes, "\n"))));
   if (r.verdict == Verdict::skip || r.verdict == Verdict::waived)
     return fmt::format("{}>\n      <skipped message=\"{}\"/>\n    </testcase>\n", head,
                        xml(r.notes.empty() ? "" : r.notes.front()));
-  if (!counts_against(r.verdict)) return notes.empty() ? head + "/>\n" : head + ">\n" + notes + "    </testcase>\n";
+  if (!counts_against(r.verdict))
+    return notes.empty() ? head + "/>\n" : head + ">\n" + notes + "    </testcase>\n";
   const char* element = r.verdict == Verdict::fail ? "failure" : "error";
   const std::string said = r.said.empty() ? "" : "\n" + r.said;
   return fmt::format("{}>\n      <{} type=\"{}\" message=\"{}\">{}</{}>\n{}    </testcase>\n", head, element,
                      name_of(r.verdict), xml(r.failures.empty() ? "" : r.failures.front()),
-                     xml(fmt::format("{}\nrerun: {}{}", fmt::join(r.failures, "\n"), r.rerun, said)), element, notes);
+                     xml(fmt::format("{}\nrerun: {}{}", fmt::join(r.failures, "\n"), r.rerun, said)), element,
+                     notes);
 }
 
 }  // namespace
 
 std::string to_text(const CaseResult& r, bool color) {
-  std::string out = fmt::format("{}{}{}  {}: {}  ({} checks, {})\n", color ? color_of(r.verdict) : "",
-                                name_of(r.verdict), color ? "\033[0m" : "", r.suite, r.id, r.checks, human_time(r.time));
+  std::string out =
+      fmt::format("{}{}{}  {}: {}  ({} checks, {})\n", color ? color_of(r.verdict) : "", name_of(r.verdict),
+                  color ? "\033[0m" : "", r.suite, r.id, r.checks, human_time(r.time));
   std::size_t traced = 0;
   for (const Candidate& c : r.accepted) {
     if (c.trace)
@@ -108,7 +112,8 @@ std::string junit_text(const std::vector<CaseResult>& results) {
       body += junit_case(*r);
     }
     out += fmt::format(
-        "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.6f}\">\n{}  "
+        "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" "
+        "time=\"{:.6f}\">\n{}  "
         "</testsuite>\n",
         xml(name), cases.size(), failures, errors, skipped, time, body);
   }

@@ -3,20 +3,28 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <cmath>
 
 namespace frustum {
 namespace {
 
-constexpr std::array<std::string_view, verdicts> names{"pass", "fail", "skip", "timeout", "crash", "waived", "flaky"};
+constexpr std::array<std::string_view, verdicts> names{"pass",  "fail",   "skip", "timeout",
+                                                       "crash", "waived", "flaky"};
 
 Json to_json(const CheckOutcome& o) {
-  return {{"port", o.port}, {"check", o.check}, {"measured", o.measured}, {"bound", o.bound}, {"held", o.held}};
+  return {
+      {"port", o.port}, {"check", o.check}, {"measured", o.measured}, {"bound", o.bound}, {"held", o.held}};
 }
 Json to_json(const Candidate& c) {
-  return {{"key", c.key}, {"digest", c.digest}, {"change", c.change}, {"staged", c.staged}, {"trace", c.trace}};
+  return {
+      {"key", c.key}, {"digest", c.digest}, {"change", c.change}, {"staged", c.staged}, {"trace", c.trace}};
 }
 Json to_json(const PictureEvidence& p) {
-  return {{"port", p.port}, {"against", p.against}, {"output", p.output}, {"reference", p.reference}};
+  return {{"port", p.port},
+          {"against", p.against},
+          {"output", p.output},
+          {"reference", p.reference},
+          {"color_space", p.color_space}};
 }
 template <class T>
 Json list(const std::vector<T>& items) {
@@ -56,17 +64,21 @@ Json case_to_json(const CaseResult& r) {
 CaseResult case_from_json(const Json& j) {
   CaseResult r;
   const auto get = [&](const char* key, auto& to) { j.at(key).get_to(to); };
-  get("suite", r.suite), get("file", r.suite_file), get("id", r.id), get("tags", r.tags), get("checks", r.checks);
+  get("suite", r.suite), get("file", r.suite_file), get("id", r.id), get("tags", r.tags),
+      get("checks", r.checks);
   get("peak_bytes", r.peak_bytes), get("counters", r.counters), get("attempts", r.attempts);
   get("failures", r.failures), get("notes", r.notes), get("said", r.said), get("images_read", r.images_read);
   get("rerun", r.rerun), get("accept", r.accept);
   for (std::size_t i = 0; i < names.size(); ++i)
     if (j.at("result") == names[i]) r.verdict = static_cast<Verdict>(i);
-  r.time = std::chrono::duration_cast<std::chrono::nanoseconds>(
-      std::chrono::duration<double, std::milli>(j.at("ms").get<double>()));
-  for (const Json& o : j.at("outcomes")) r.outcomes.push_back({o.at("port"), o.at("check"), o.at("measured"), o.at("bound"), o.at("held")});
-  for (const Json& c : j.at("accepted")) r.accepted.push_back({c.at("key"), c.at("digest"), c.at("change"), c.at("staged"), c.at("trace")});
-  for (const Json& p : j.at("pictures")) r.pictures.push_back({p.at("port"), p.at("against"), p.at("output"), p.at("reference")});
+  r.time = std::chrono::nanoseconds(std::llround(j.at("ms").get<double>() * 1e6));
+  for (const Json& o : j.at("outcomes"))
+    r.outcomes.push_back({o.at("port"), o.at("check"), o.at("measured"), o.at("bound"), o.at("held")});
+  for (const Json& c : j.at("accepted"))
+    r.accepted.push_back({c.at("key"), c.at("digest"), c.at("change"), c.at("staged"), c.at("trace")});
+  for (const Json& p : j.at("pictures"))
+    r.pictures.push_back(
+        {p.at("port"), p.at("against"), p.at("output"), p.at("reference"), p.at("color_space")});
   return r;
 }
 

@@ -37,6 +37,7 @@ struct Candidate {
 struct PictureEvidence {
   std::string port, against;
   std::string output, reference;  // file names; reference is empty where there is none yet
+  std::string color_space;        // of both; the files do not keep it
 };
 
 struct CaseResult {
@@ -53,7 +54,7 @@ struct CaseResult {
   std::chrono::nanoseconds time{0};
   std::uint64_t peak_bytes = 0;
   std::map<std::string, std::uint64_t> counters;
-  std::string said;    // the end of what it wrote to stdout and stderr, where it did not pass
+  std::string said;           // the end of what it wrote to stdout and stderr, where it did not pass
   std::string rerun, accept;  // the commands that run this case alone, and that record its goldens
   bool images_read = false;   // it opened the image module
 };
@@ -67,7 +68,8 @@ Json to_json(const std::vector<CaseResult>&);
 std::string to_text(const CaseResult&, bool color);
 // "3 pass, 1 fails (of 4), 1.2 s"
 std::string summary_text(const std::vector<CaseResult>&);
-// JUnit XML, one test suite per suite file: fail is a failure, crash and timeout are errors, skip and waived are skipped.
+// JUnit XML, one test suite per suite file: fail is a failure, crash and timeout are errors, skip and waived
+// are skipped.
 std::string junit_text(const std::vector<CaseResult>&);
 
 }  // namespace frustum

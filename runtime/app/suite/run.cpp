@@ -3,7 +3,6 @@
 #include "runtime/app/suite/isolate.h"
 #include "runtime/io/image_files.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -16,7 +15,7 @@
 namespace frustum {
 namespace {
 
-std::string quoted(const std::string& word) {
+std::string shell_word(const std::string& word) {
   std::string out = "'";
   for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
   return out + "'";
@@ -41,7 +40,7 @@ struct Item {
   const Suite* suite;
   const SuiteCase* suite_case;
   const GoldenBook* book;
-  CaseResult result;  // of the last attempt
+  CaseResult result;                 // of the last attempt
   std::vector<std::string> earlier;  // failures of the attempts before
 };
 
@@ -49,7 +48,9 @@ class SuiteRun {
  public:
   SuiteRun(Session& session, const std::vector<Suite>& suites, const SuiteOptions& options,
            const std::function<void(const CaseResult&)>& each)
-      : session_(session), options_(options), each_(each),
+      : session_(session),
+        options_(options),
+        each_(each),
         jobs_(options.jobs > 0 ? options.jobs : processors()),
         today_(options.today.empty() ? today_utc() : options.today) {
     for (const Suite& suite : suites) {
@@ -75,7 +76,7 @@ class SuiteRun {
     CaseResult r;
     r.suite = item.suite->name, r.suite_file = item.suite->file;
     r.id = item.suite_case->id, r.tags = item.suite_case->tags;
-    r.rerun = fmt::format("frustum test {} --filter {}", item.suite->file, quoted(r.id));
+    r.rerun = fmt::format("frustum test {} --filter {}", item.suite->file, shell_word(r.id));
     r.accept = r.rerun + " --accept --reason '...'";
     r.attempts = static_cast<int>(item.result.attempts);
     return r;
@@ -146,8 +147,9 @@ class SuiteRun {
 
   void start(IsolatedProcesses& processes, std::size_t i) {
     const std::chrono::duration<double> timeout(timeout_of(items_[i]));
-    processes.start(i, std::chrono::duration_cast<std::chrono::nanoseconds>(timeout),
-                    [this, i] { return case_to_json(judged(i)).dump(-1, ' ', false, Json::error_handler_t::replace); });
+    processes.start(i, std::chrono::duration_cast<std::chrono::nanoseconds>(timeout), [this, i] {
+      return case_to_json(judged(i)).dump(-1, ' ', false, Json::error_handler_t::replace);
+    });
   }
 
   void take(const IsolatedEnd& end) {
@@ -166,8 +168,9 @@ class SuiteRun {
     if (item.result.verdict != Verdict::pass) item.result.said = readable(end.said);
   }
 
-  // Opening the image module takes as long as many small cases. Once a case needed it, it is opened here, so that every
-  // later process is born with it. What it starts are idle threads of a logging library that nobody waits for.
+  // Opening the image module takes as long as many small cases. Once a case needed it, it is opened here, so
+  // that every later process is born with it. What it starts are idle threads of a logging library that
+  // nobody waits for.
   void open_images_once(const CaseResult& r, std::size_t left) {
     constexpr std::size_t worth_it = 4;
     if (r.images_read && left >= worth_it && !image_module_is_open()) open_image_module();
@@ -178,7 +181,8 @@ class SuiteRun {
   bool again(std::size_t i) {
     Item& item = items_[i];
     CaseResult& r = item.result;
-    if (!counts_against(r.verdict) || r.attempts > std::max(item.suite_case->retry, options_.retry)) return false;
+    if (!counts_against(r.verdict) || r.attempts > std::max(item.suite_case->retry, options_.retry))
+      return false;
     for (const std::string& f : r.failures)
       item.earlier.push_back(fmt::format("attempt {}, {}: {}", r.attempts, name_of(r.verdict), f));
     ++r.attempts;
@@ -222,7 +226,8 @@ std::string golden_folder(const Suite& suite) {
   return (std::filesystem::path(suite.file).parent_path() / ".." / "golden").lexically_normal().string();
 }
 
-std::vector<CaseResult> run_suites(Session& session, const std::vector<Suite>& suites, const SuiteOptions& options,
+std::vector<CaseResult> run_suites(Session& session, const std::vector<Suite>& suites,
+                                   const SuiteOptions& options,
                                    const std::function<void(const CaseResult&)>& each) {
   return SuiteRun(session, suites, options, each).run();
 }

@@ -13,22 +13,23 @@ namespace frustum {
 struct SuiteOptions {
   std::vector<std::string> filters;
   Shard shard;
-  int jobs = 0;           // cases at a time; 0: one a processor
-  int threads = 0;        // of each case; 0: the processors shared among the jobs
-  bool isolate = true;    // false: one after the other in this process, for a debugger; a crash ends everything
-  double timeout = 60;    // seconds of a case that says nothing else
-  int retry = 0;          // further attempts, of cases that ask for fewer
+  int jobs = 0;         // cases at a time; 0: one a processor
+  int threads = 0;      // of each case; 0: the processors shared among the jobs
+  bool isolate = true;  // false: one after the other in this process, for a debugger; a crash ends everything
+  double timeout = 60;  // seconds of a case that says nothing else
+  int retry = 0;        // further attempts, of cases that ask for fewer
   Goldens goldens = Goldens::compare;
-  std::string staging;    // as JudgeOptions
+  std::string staging;  // as JudgeOptions
   std::string evidence;
   bool evidence_of_all = false;
-  std::string today;      // "2026-11-22": waivers of earlier days have expired; empty: today
+  std::string today;  // "2026-11-22": waivers of earlier days have expired; empty: today
   const CancelFlag* cancel = nullptr;
 };
 
-// Runs the chosen cases and hands each result to `each` as soon as it is there. The results are in the order of the suites,
-// whatever order the cases ended in. Goldens lie in ../golden beside a suite's folder and are read only. Throws Cancelled,
-// all processes being gone first, and WorldError. With `isolate` this process must not have started a thread that runs work.
+// Runs the chosen cases and hands each result to `each` as soon as it is there. The results are in the order
+// of the suites, whatever order the cases ended in. Goldens lie in ../golden beside a suite's folder and are
+// read only. Throws Cancelled, all processes being gone first, and WorldError. With `isolate` this process
+// must not have started a thread that runs work.
 std::vector<CaseResult> run_suites(Session&, const std::vector<Suite>&, const SuiteOptions&,
                                    const std::function<void(const CaseResult&)>& each);
 

@@ -1,4 +1,5 @@
-// The JSON Schema of suite files, draft 2020-12: the keys come from their declarations, what has several forms from here.
+// The JSON Schema of suite files, draft 2020-12: the keys come from their declarations, what has several
+// forms from here.
 #include "runtime/app/suite/invariants.h"
 #include "runtime/app/suite/keys.h"
 #include "runtime/app/suite/suite.h"
@@ -19,7 +20,8 @@ Json described(const Json& from, Json schema) {
 
 // Absent is absent here: no null, and no default that says nothing.
 Json plain(Json schema) {
-  if (schema.contains("anyOf") && schema["anyOf"].size() == 2 && schema["anyOf"][1] == Json{{"type", "null"}}) {
+  if (schema.contains("anyOf") && schema["anyOf"].size() == 2 &&
+      schema["anyOf"][1] == Json{{"type", "null"}}) {
     const Json inner = schema["anyOf"][0];
     schema.erase("anyOf");
     schema.update(inner);
@@ -55,7 +57,8 @@ const Json& matrix() {
 
 Json statistics_schema() {
   const Json number = {{"type", "number"}};
-  const Json interval = one_of({number, Json{{"type", "array"}, {"items", number}, {"minItems", 2}, {"maxItems", 2}}});
+  const Json interval =
+      one_of({number, Json{{"type", "array"}, {"items", number}, {"minItems", 2}, {"maxItems", 2}}});
   Json properties = {{"plane", {{"type", "string"}}}, {"column", {{"type", "string"}}}};
   for (const char* name : {"min", "max", "mean", "deviation", "sum", "count"}) properties[name] = interval;
   return {{"type", "object"},
@@ -78,14 +81,14 @@ Json check_schema() {
   const Json relation = one_of({Json{{"enum", {"same", "mirror_x", "mirror_y", "rotate_180"}}},
                                 keys_schema<suite_keys::Relation>({}, {})});
   return keys_schema<suite_keys::Check>(
-      {"port"},
-      {{"same_as", one_of({text, keys_schema<suite_keys::OtherRun>({}, {{"set", values()}})})},
-       {"metamorphic", keys_schema<suite_keys::Metamorphic>({"expect"}, {{"set", values()}, {"expect", relation}})},
-       {"shape", Json{{"type", "object"}}},
-       {"statistics", statistics_schema()},
-       {"invariant", invariant_schema()},
-       {"probe", probe},
-       {"analytic", keys_schema<suite_keys::Analytic>({"value", "equals"}, {})}});
+      {"port"}, {{"same_as", one_of({text, keys_schema<suite_keys::OtherRun>({}, {{"set", values()}})})},
+                 {"metamorphic", keys_schema<suite_keys::Metamorphic>(
+                                     {"expect"}, {{"set", values()}, {"expect", relation}})},
+                 {"shape", Json{{"type", "object"}}},
+                 {"statistics", statistics_schema()},
+                 {"invariant", invariant_schema()},
+                 {"probe", probe},
+                 {"analytic", keys_schema<suite_keys::Analytic>({"value", "equals"}, {})}});
 }
 
 Json case_schema() {
@@ -101,8 +104,8 @@ Json case_schema() {
        {"checks", list_of(check_schema())},
        {"expect", one_of({expect, list_of(expect)})},
        {"budget", budget},
-       {"waiver", keys_schema<suite_keys::Waiver>({"until", "why"},
-                                                  {{"until", Json{{"type", "string"}, {"format", "date"}}}})}});
+       {"waiver", keys_schema<suite_keys::Waiver>(
+                      {"until", "why"}, {{"until", Json{{"type", "string"}, {"format", "date"}}}})}});
 }
 
 }  // namespace
@@ -110,18 +113,18 @@ Json case_schema() {
 Json suite_schema() {
   const Json text = {{"type", "string"}};
   Json out = {{"$schema", draft}, {"title", "frustum suite"}};
-  out.update(Json{
-      {"type", "object"},
-      {"properties",
-       {{"$schema", text},
-        {"format", {{"const", "frustum.suite/1"}}},
-        {"title", {{"type", "string"}, {"description", "One line for people."}}},
-        {"presets",
-         {{"type", "object"},
-          {"additionalProperties", keys_schema<suite_keys::Preset>({}, {{"set", values()}, {"matrix", matrix()}})}}},
-        {"cases", list_of(case_schema())}}},
-      {"additionalProperties", false},
-      {"required", {"format", "cases"}}});
+  out.update(Json{{"type", "object"},
+                  {"properties",
+                   {{"$schema", text},
+                    {"format", {{"const", "frustum.suite/1"}}},
+                    {"title", {{"type", "string"}, {"description", "One line for people."}}},
+                    {"presets",
+                     {{"type", "object"},
+                      {"additionalProperties",
+                       keys_schema<suite_keys::Preset>({}, {{"set", values()}, {"matrix", matrix()}})}}},
+                    {"cases", list_of(case_schema())}}},
+                  {"additionalProperties", false},
+                  {"required", {"format", "cases"}}});
   return out;
 }
 

@@ -9,8 +9,10 @@ namespace {
 
 bool matches(std::string_view glob, const SuiteCase& c) {
   if (glob_matches(glob, c.id)) return true;
-  if (std::any_of(c.tags.begin(), c.tags.end(), [&](const auto& tag) { return glob_matches(glob, tag); })) return true;
-  for (std::size_t end = c.id.find_first_of("/["); end != std::string::npos; end = c.id.find_first_of("/[", end + 1))
+  if (std::any_of(c.tags.begin(), c.tags.end(), [&](const auto& tag) { return glob_matches(glob, tag); }))
+    return true;
+  for (std::size_t end = c.id.find_first_of("/["); end != std::string::npos;
+       end = c.id.find_first_of("/[", end + 1))
     if (glob_matches(glob, std::string_view(c.id).substr(0, end))) return true;
   return false;
 }

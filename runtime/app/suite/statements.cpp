@@ -9,24 +9,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace frustum {
 namespace {
 
 Judged judged(std::string check, bool held, std::string measured, std::string bound) {
   Judged j{{"", std::move(check), std::move(measured), std::move(bound), held}, ""};
-  if (!held) j.sentence = fmt::format("{} is {}, expected {}", j.outcome.check, j.outcome.measured, j.outcome.bound);
+  if (!held)
+    j.sentence = fmt::format("{} is {}, expected {}", j.outcome.check, j.outcome.measured, j.outcome.bound);
   return j;
 }
 
 std::string near_name(const std::string& name, const std::vector<std::string>& known) {
   const auto near = nearest_names(name, known);
-  return near.empty() ? fmt::format("; there are {}", fmt::join(known, ", ")) : fmt::format("; did you mean '{}'?", near[0]);
+  return near.empty() ? fmt::format("; there are {}", fmt::join(known, ", "))
+                      : fmt::format("; did you mean '{}'?", near[0]);
 }
 
 const Series& series_of(const Values& v, const std::string& name) {
   const Series* s = v.find(name);
-  if (s == nullptr) throw NodeError("no_series", fmt::format("it has no plane or column '{}'{}", name, near_name(name, v.names())));
+  if (s == nullptr)
+    throw NodeError("no_series",
+                    fmt::format("it has no plane or column '{}'{}", name, near_name(name, v.names())));
   return *s;
 }
 
@@ -36,7 +41,8 @@ const Series& series_of(const Values& v, const std::string& name) {
 std::vector<std::size_t> probed(const Probe& p, const Values& v, const Series& s) {
   std::vector<std::size_t> out;
   if (p.at == Probe::At::row) {
-    if (p.row >= s.rows()) throw NodeError("no_such_place", fmt::format("{} has {} rows and no row {}", s.name, s.rows(), p.row));
+    if (p.row >= s.rows())
+      throw NodeError("no_such_place", fmt::format("{} has {} rows and no row {}", s.name, s.rows(), p.row));
     for (std::size_t k = 0; k < static_cast<std::size_t>(s.width); ++k)
       out.push_back(p.row * static_cast<std::size_t>(s.width) + k);
     return out;
@@ -45,10 +51,13 @@ std::vector<std::size_t> probed(const Probe& p, const Values& v, const Series& s
   const Rect& w = *v.window;
   const auto [x, y, width, height] = p.region;
   if (x < w.x0 || y < w.y0 || width > w.x1 - x || height > w.y1 - y)
-    throw NodeError("no_such_place", fmt::format("the pixels from {},{} on, {} x {}, are not all in the window {} x {} at {},{}", x,
-                                                 y, width, height, w.width(), w.height(), w.x0, w.y0));
+    throw NodeError(
+        "no_such_place",
+        fmt::format("the pixels from {},{} on, {} x {}, are not all in the window {} x {} at {},{}", x, y,
+                    width, height, w.width(), w.height(), w.x0, w.y0));
   if (p.sample.value_or(0) >= v.samples)
-    throw NodeError("no_such_place", fmt::format("there are {} samples and no sample {}", v.samples, *p.sample));
+    throw NodeError("no_such_place",
+                    fmt::format("there are {} samples and no sample {}", v.samples, *p.sample));
   for (int sample = p.sample.value_or(0); sample < (p.sample ? *p.sample + 1 : v.samples); ++sample)
     for (int row = y; row < y + height; ++row)
       for (int column = x; column < x + width; ++column)
@@ -63,7 +72,11 @@ std::vector<std::size_t> probed(const Probe& p, const Values& v, const Series& s
 
 double statistic(const std::string& name, std::vector<double>& values) {
   if (name == "count") return static_cast<double>(values.size());
-  if (values.empty()) throw NodeError("no_numbers", fmt::format("there are no numbers to take the {} of", name));
+  if (values.empty())
+    throw NodeError("no_numbers", fmt::format("there are no numbers to take the {} of", name));
+  // NaN comes through, wherever it stands: comparisons would step over it.
+  if (std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); }))
+    return std::numeric_limits<double>::quiet_NaN();
   if (name == "min") return *std::min_element(values.begin(), values.end());
   if (name == "max") return *std::max_element(values.begin(), values.end());
   if (name[0] == 'p') {  // the nearest rank
@@ -106,7 +119,8 @@ std::vector<Judged> judge_probe(const Probe& p, const Buffer& buffer) {
   const Series& s = series_of(v, p.series);
   const auto indices = probed(p, v, s);
   if (p.equals.size() > 1 && p.equals.size() != indices.size())
-    throw NodeError("wrong_length", fmt::format("{} numbers are expected where there are {}", p.equals.size(), indices.size()));
+    throw NodeError("wrong_length", fmt::format("{} numbers are expected where there are {}", p.equals.size(),
+                                                indices.size()));
   std::size_t wrong = 0;
   std::string first, wanted;
   for (std::size_t k = 0; k < indices.size(); ++k) {
@@ -117,7 +131,8 @@ std::vector<Judged> judge_probe(const Probe& p, const Buffer& buffer) {
     const bool tell = held ? k == 0 && wrong == 0 : wrong++ == 0;
     if (!tell) continue;
     first = fmt::format("{:.9g} for {}", x, v.place(s, indices[k]));
-    wanted = p.between ? fmt::format("{:.9g} to {:.9g}", p.between->first, p.between->second) : fmt::format("{:.9g}", expected);
+    wanted = p.between ? fmt::format("{:.9g} to {:.9g}", p.between->first, p.between->second)
+                       : fmt::format("{:.9g}", expected);
   }
   if (wrong > 1) first += fmt::format(" and {} more", wrong - 1);
   return {judged("probe", wrong == 0, first, wanted)};
@@ -133,9 +148,10 @@ std::vector<Judged> judge_statistics(const std::vector<Statistic>& statistics, c
     else
       for (const Series& each : v.series) values.insert(values.end(), each.values.begin(), each.values.end());
     const double x = statistic(s.name, values);
-    out.push_back(judged(s.series.empty() ? s.name : s.series + " " + s.name, x >= s.low && x <= s.high,
-                         fmt::format("{:.9g}", x),
-                         s.low == s.high ? fmt::format("{:.9g}", s.low) : fmt::format("{:.9g} to {:.9g}", s.low, s.high)));
+    out.push_back(judged(
+        s.series.empty() ? s.name : s.series + " " + s.name, x >= s.low && x <= s.high,
+        fmt::format("{:.9g}", x),
+        s.low == s.high ? fmt::format("{:.9g}", s.low) : fmt::format("{:.9g} to {:.9g}", s.low, s.high)));
   }
   return out;
 }

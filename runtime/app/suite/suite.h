@@ -22,12 +22,14 @@ struct ExpectedProblem {
 
 // What a run may cost. Bytes and counters are the same on every machine and fail; time only says so.
 struct Budget {
-  std::optional<std::uint64_t> bytes;             // live at once, at the peak
-  std::map<std::string, std::uint64_t> counters;  // "triangles_clipped", or "cut:triangles_clipped" of one node
+  std::optional<std::uint64_t> bytes;  // live at once, at the peak
+  std::map<std::string, std::uint64_t>
+      counters;  // "triangles_clipped", or "cut:triangles_clipped" of one node
   std::optional<std::chrono::nanoseconds> time;
 };
 
-// A failure that is known: it does not count until the date has passed. Then it counts, whatever the case does.
+// A failure that is known: it does not count until the date has passed. Then it counts, whatever the case
+// does.
 struct Waiver {
   std::string until;  // "2026-12-31", the last day (UTC)
   std::string why;
@@ -44,9 +46,9 @@ struct SuiteCase {
   std::vector<std::string> tags;
   Budget budget;
   std::optional<Waiver> waiver;
-  std::string skip;              // why it is not run; empty: it is
+  std::string skip;               // why it is not run; empty: it is
   std::optional<double> timeout;  // seconds, instead of the run's
-  int retry = 0;                 // further attempts after one that did not pass
+  int retry = 0;                  // further attempts after one that did not pass
 };
 
 struct Suite {

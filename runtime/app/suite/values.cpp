@@ -77,7 +77,8 @@ double steps(double a, double b) {
 
 const Series* Values::find(std::string_view name) const {
   if (name.empty()) return series.empty() ? nullptr : &series.front();
-  const auto found = std::find_if(series.begin(), series.end(), [&](const Series& s) { return s.name == name; });
+  const auto found =
+      std::find_if(series.begin(), series.end(), [&](const Series& s) { return s.name == name; });
   return found != series.end() ? &*found : nullptr;
 }
 
@@ -89,7 +90,8 @@ std::vector<std::string> Values::names() const {
 
 std::string Values::place(const Series& s, std::size_t value) const {
   if (!window) return fmt::format("{}, row {}", s.name, value / static_cast<std::size_t>(s.width));
-  const auto width = static_cast<std::size_t>(window->width()), height = static_cast<std::size_t>(window->height());
+  const auto width = static_cast<std::size_t>(window->width()),
+             height = static_cast<std::size_t>(window->height());
   const std::string sample = samples > 1 ? fmt::format(" sample {}", value / (width * height)) : "";
   return fmt::format("{} at {},{}{}", s.name, window->x0 + static_cast<int>(value % width),
                      window->y0 + static_cast<int>(value / width % height), sample);
@@ -106,7 +108,9 @@ Values values_of(const Raster& raster) {
       for (int y = f.window.y0; y < f.window.y1; ++y) switch (f.planes[p].kind) {
           case PlaneKind::f32: append_row<float>(tile, static_cast<int>(p), sample, y, s.values); break;
           case PlaneKind::f64: append_row<double>(tile, static_cast<int>(p), sample, y, s.values); break;
-          case PlaneKind::u32: append_row<std::uint32_t>(tile, static_cast<int>(p), sample, y, s.values); break;
+          case PlaneKind::u32:
+            append_row<std::uint32_t>(tile, static_cast<int>(p), sample, y, s.values);
+            break;
         }
   }
   return v;
@@ -116,7 +120,8 @@ Values values_of(const Buffer& buffer) {
   if (buffer.type().is_pixels()) return values_of(buffer.type().raster(buffer.data()));
   if (const auto mesh = buffer.as<Mesh>()) return values_of(*mesh);
   if (buffer.type().table == nullptr)
-    throw NodeError("no_numbers", fmt::format("a {} has no numbers to look at", buffer.type().name));
+    throw NodeError("no_numbers",
+                    fmt::format("a buffer of kind {} has no numbers to look at", buffer.type().name));
   return values_of_table(buffer.type().table(buffer.data(), 0, std::numeric_limits<std::size_t>::max()));
 }
 

@@ -12,10 +12,10 @@
 namespace frustum {
 
 struct Series {
-  std::string name;                    // of a plane or a column
-  NumberKind kind = NumberKind::f64;   // as stored, which says what an ulp is
-  int width = 1;                       // numbers a row
-  std::vector<double> values;          // row by row; every kind fits a double exactly
+  std::string name;                   // of a plane or a column
+  NumberKind kind = NumberKind::f64;  // as stored, which says what an ulp is
+  int width = 1;                      // numbers a row
+  std::vector<double> values;         // row by row; every kind fits a double exactly
   std::size_t rows() const { return values.size() / static_cast<std::size_t>(width); }
 };
 
@@ -30,13 +30,13 @@ struct Values {
   std::string place(const Series&, std::size_t value) const;
 };
 
-// Planes of pixels, columns of a mesh, otherwise the columns of numbers of the table form. Throws NodeError("no_numbers")
-// for a kind that has none of these. Cost: 8 bytes a number.
+// Planes of pixels, columns of a mesh, otherwise the columns of numbers of the table form. Throws
+// NodeError("no_numbers") for a kind that has none of these. Cost: 8 bytes a number.
 Values values_of(const Buffer&);
 Values values_of(const Raster&);
 
-// Numbers between neighbours: how many steps of `kind` lie from a to b; infinite where either is NaN. Real kinds count by
-// their ordered bits, so that -0 and +0 are 0 apart; integers by their difference.
+// Numbers between neighbours: how many steps of `kind` lie from a to b; infinite where either is NaN. Real
+// kinds count by their ordered bits, so that -0 and +0 are 0 apart; integers by their difference.
 double steps_between(double a, double b, NumberKind kind);
 
 // Whether a is as close to b, which is what was expected, as is asked. NaN is close to nothing.
