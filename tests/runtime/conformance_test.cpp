@@ -283,6 +283,14 @@ TEST(Conformance, EveryExampleGraphIsInASuite) {
   for (const std::string& graph :
        graphs_in({"graphs/nodes/*/*.json", "graphs/gallery/*.json", "graphs/lessons/*/*.json"}))
     EXPECT_TRUE(covered.contains(graph)) << graph << " is in no suite";
+  // A library has inputs, so that it runs inside other graphs.
+  for (const std::string& library : graphs_in({"graphs/lib/*.json"})) {
+    const std::string used = "\"lib:" + fs::path(library).stem().string() + "\"";
+    const bool inside = std::any_of(covered.begin(), covered.end(), [&](const std::string& graph) {
+      return read_text(root / graph).find(used) != std::string::npos;
+    });
+    EXPECT_TRUE(inside) << library << " is used by no graph that is in a suite";
+  }
 }
 
 TEST(Conformance, SchemasAndPagesAreUpToDate) {

@@ -69,7 +69,8 @@ TEST_F(SuiteCheckTest, ProbeOfAVertex) {
 
 TEST_F(SuiteCheckTest, Statistics) {
   holds(image(
-      R"({"port": "out", "statistics": {"plane": "R", "min": 0, "max": 0.203125, "mean": [0.1015, 0.1016], "count": 32, "p50": [0.09, 0.11]}})"));
+      R"({"port": "out", "statistics": {"plane": "R", "min": 0, "max": 0.203125, "mean": [0.1015, 0.1016],
+      "count": 32, "p50": [0.09, 0.11]}})"));
   breaks(image(R"({"port": "out", "statistics": {"plane": "R", "mean": [0, 0.1]}})"),
          "R mean is 0.1015625, expected 0 to 0.1");
   breaks(image(R"({"port": "out", "statistics": {"deviation": 0}})"), "deviation is");
@@ -85,9 +86,8 @@ TEST_F(SuiteCheckTest, Analytic) {
          "holds nowhere");
   breaks(image(R"({"port": "out", "analytic": {"value": "Q", "equals": "0"}})"), "'Q' is neither a plane");
   holds(of("table", R"({"port": "out", "analytic": {"value": "square", "equals": "n^2"}})"));
-  holds(of("mesh", R"({"port": "out", "analytic": {"value": "position.x + position.y + position.z", "equals": "min(row, 1)"
-}
-})"));
+  holds(of("mesh", R"json({"port": "out", "analytic": {"value": "position.x + position.y + position.z",
+                                                       "equals": "min(row, 1)"}})json"));
 }
 
 TEST_F(SuiteCheckTest, InvariantsOfMeshes) {

@@ -48,7 +48,8 @@ TEST(SuiteIsolation, GivesTheResultsOfOneProcess) {
   if (test::done_in_a_fresh_process()) return;
   const test::SuiteFolder folder;
   const std::string cases =
-      R"({"id": "a", "graph": "image.json", "checks": [{"port": "out", "shape": {"width": 9}}]}, {"id": "b", "graph": "image.json", "matrix": {"made:add": [0, 1, 2]}})";
+      R"({"id": "a", "graph": "image.json", "checks": [{"port": "out", "shape": {"width": 9}}]},
+      {"id": "b", "graph": "image.json", "matrix": {"made:add": [0, 1, 2]}})";
   SuiteOptions options;
   options.jobs = 2;
   auto apart = folder.run(cases, options), here = folder.run(cases);
@@ -98,11 +99,12 @@ TEST(SuiteIsolation, ALargeResultComesBackWhole) {
 TEST(SuiteIsolation, AnInterruptEndsTheProgramWith130AndItsProcesses) {
   const test::TempFolder folder;
   std::filesystem::create_directories(folder.file("suites"));
-  const std::string suite = folder.write(
-      "suites/long.json",
-      R"({"format": "frustum.suite/1", "cases": [{"id": "long", "graph": ")" +
-          std::string(FRUSTUM_SOURCE_DIR) +
-          R"(/graphs/gallery/teapot.json", "set": {"resolution": [3000, 3000], "samples": 64}, "matrix": {"mesh:tolerance_px": [0.1, 0.2, 0.3]}}]})");
+  const std::string suite =
+      folder.write("suites/long.json",
+                   R"({"format": "frustum.suite/1", "cases": [{"id": "long", "graph": ")" +
+                       std::string(FRUSTUM_SOURCE_DIR) +
+                       R"(/graphs/gallery/teapot.json", "set": {"resolution": [3000, 3000], "samples": 64},
+      "matrix": {"mesh:tolerance_px": [0.1, 0.2, 0.3]}}]})");
   const pid_t program = ::fork();
   ASSERT_GE(program, 0);
   if (program == 0) {

@@ -25,7 +25,8 @@ std::string content(const std::string& path) {
 const std::string golden =
     R"({"id": "t", "graph": "image.json", "checks": [{"port": "out", "golden": true}]})";
 const std::string with_max =
-    R"({"id": "t", "graph": "image.json", "checks": [{"port": "out", "golden": true, "max": 0.01, "why": "a test"}]})";
+    R"({"id": "t", "graph": "image.json", "checks": [{"port": "out", "golden": true, "max": 0.01,
+      "why": "a test"}]})";
 
 TEST(SuiteGolden, IsAcceptedAndThenHeld) {
   const test::SuiteFolder folder;
@@ -55,7 +56,8 @@ TEST(SuiteGolden, ThatDiffersFailsBeyondItsTolerance) {
 TEST(SuiteGolden, OfAMeshKeepsItsNumbersWhereATolerancesNeedsThem) {
   const test::SuiteFolder folder;
   const std::string mesh =
-      R"({"id": "m", "graph": "mesh.json", "checks": [{"port": "out", "golden": true, "max": 0.1, "why": "a test"}]})";
+      R"({"id": "m", "graph": "mesh.json", "checks": [{"port": "out", "golden": true, "max": 0.1,
+      "why": "a test"}]})";
   folder.accept(mesh);
   folder.graph("mesh.json", "test.mesh", R"({"scale": 1.05})");
   EXPECT_EQ(folder.run(mesh).at(0).verdict, Verdict::pass);
@@ -122,7 +124,8 @@ TEST(SuiteRun, ExpectsDiagnosticsExactly) {
   folder.files().write("suites/bad.json",
                        R"({"format": "frustum.graph/1", "nodes": {"a": {"type": "test.imgae"}}})");
   const auto r = folder.run(
-      R"({"id": "right", "graph": "bad.json", "expect": {"code": "unknown_type", "pointer": "/nodes/a/type", "line": 1, "suggestion": "test.image"}},
+      R"({"id": "right", "graph": "bad.json", "expect": {"code": "unknown_type",
+      "pointer": "/nodes/a/type", "line": 1, "suggestion": "test.image"}},
          {"id": "wrong", "graph": "bad.json", "expect": [{"code": "cycle"}]},
          {"id": "good", "graph": "image.json", "expect": {"code": "cycle"}},
          {"id": "none", "graph": "bad.json"},
@@ -161,10 +164,10 @@ TEST(SuiteRun, WaivesUntilTheDateHasPassed) {
     SuiteOptions options;
     options.isolate = false, options.today = day;
     return folder
-        .run(
-            R"({"id": "w", "graph": ")" + std::string(graph) +
-                R"(.json", "waiver": {"until": "2030-06-30", "why": "known"}, "checks": [{"port": "out", "shape": {"width": 8}}]})",
-            options)
+        .run(R"({"id": "w", "graph": ")" + std::string(graph) +
+                 R"(.json", "waiver": {"until": "2030-06-30", "why": "known"}, "checks": [{"port": "out",
+      "shape": {"width": 8}}]})",
+             options)
         .at(0);
   };
   EXPECT_EQ(on("2030-06-30", "act").verdict, Verdict::waived);

@@ -15,8 +15,8 @@ namespace frustum::test {
 //   test.copy   its image
 //   test.mesh   a tetrahedron that looks outward; open, inside_out, scale
 //   test.table  columns "n" 0 1 2 ... and "square", of `rows`
-//   test.act    image of one pixel, after it did `what`: "nothing", "crash", "exit", "hang", "throw", "say", or
-//               "flaky": throws unless `file` exists, and makes it
+//   test.act    image of one pixel, after it did `what`: "nothing", "crash", "exit", "hang", "throw", "say",
+//               or "flaky": throws unless `file` exists, and makes it
 Registry suite_nodes();
 
 // A folder with suites/, golden/ and graphs in it.

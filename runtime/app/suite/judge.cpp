@@ -84,7 +84,8 @@ class Judge {
     problems.add(r.problems);
     if (r.end != RunResult::End::done) return;
     result_.peak_bytes = r.peak_bytes, result_.counters = counters.all;
-    for (const auto& [port, buffer] : r.buffers) run_.check_finite(graph.name(port), buffer);
+    for (const auto& [port, buffer] : r.buffers)
+      if (buffer) run_.check_finite(graph.name(port), buffer);
     for (const SuiteCheck& check : case_.checks) check_port(graph, check, r.buffers);
     run_.name_first_divergence(graph, r.buffers);
     check_budget(counters, r.peak_bytes);
@@ -120,6 +121,11 @@ class Judge {
       return buffers.at(*port_of(graph, address, none));
     };
     const Buffer& buffer = buffer_of(check.port);
+    for (const std::string& address :
+         {check.port, check.invariant ? check.invariant->of : std::string(),
+          check.same_as && is_own_run(*check.same_as) ? check.same_as->port : ""})
+      if (!address.empty() && !buffer_of(address))
+        return fail(fmt::format("{}: the node did not make this optional output", address));
     const auto judged = [&](const char* what, auto&& outcomes) { run_.take(check.port, what, outcomes); };
     if (!check.shape.empty()) judged("shape", [&] { return judge_shape(check.shape, buffer); });
     if (check.probe) judged("probe", [&] { return judge_probe(*check.probe, buffer); });
@@ -166,6 +172,7 @@ class Judge {
       return;
     }
     const Buffer& found = r.buffers.at(*port);
+    if (!found) return fail(fmt::format("{}: {} did not make this optional output", check.port, what));
     run_.check_finite(fmt::format("{} of {}", loaded.graph->name(*port), what), found);
     run_.check_related(check, own, found, relation, what);
   }

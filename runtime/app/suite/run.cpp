@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <deque>
 #include <filesystem>
+#include <iterator>
 #include <map>
+#include <stdexcept>
 #include <thread>
 
 namespace frustum {
@@ -122,6 +124,10 @@ class SuiteRun {
   // ----- in processes
 
   void run_isolated() {
+    namespace fs = std::filesystem;
+    const auto threads = std::distance(fs::directory_iterator("/proc/self/task"), fs::directory_iterator());
+    if (threads > 1 && !image_module_is_open())
+      throw std::logic_error("cases cannot be isolated from a process that has started threads");
     IsolatedProcesses processes(static_cast<std::size_t>(jobs_));
     std::deque<std::size_t> waiting;
     for (std::size_t i = 0; i < items_.size(); ++i)
