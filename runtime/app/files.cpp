@@ -1,6 +1,7 @@
 #include "runtime/app/files.h"
 
 #include "runtime/core/error.h"
+#include "runtime/core/read_file.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -16,9 +17,8 @@ namespace frustum {
 namespace fs = std::filesystem;
 namespace {
 
-[[noreturn]] void fail(std::string code, std::string_view what, const fs::path& path) {
-  throw WorldError(std::move(code),
-                   fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(errno)));
+[[noreturn]] void cannot_write(const fs::path& path, const std::string& why) {
+  throw WorldError("cannot_write_file", fmt::format("cannot write {}: {}", path.string(), why));
 }
 
 void add_unique(std::vector<std::string>& list, const fs::path& folder) {
@@ -28,34 +28,34 @@ void add_unique(std::vector<std::string>& list, const fs::path& folder) {
   if (std::find(list.begin(), list.end(), real.string()) == list.end()) list.push_back(real.string());
 }
 
-// Whether `name` matches a pattern in which `*` stands for any run of characters.
+// Whether `name` matches a pattern in which `*` stands for any run of characters. A star that matched too
+// little is widened; only the last one ever has to be, so the cost is |name| |pattern|.
 bool matches(std::string_view name, std::string_view pattern) {
-  if (pattern.empty()) return name.empty();
-  if (pattern.front() == '*') {
-    for (std::size_t skip = 0; skip <= name.size(); ++skip)
-      if (matches(name.substr(skip), pattern.substr(1))) return true;
-    return false;
+  constexpr auto none = std::string_view::npos;
+  std::size_t n = 0, p = 0, star = none, star_end = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++, star_end = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++p, ++n;
+    } else if (star != none) {
+      p = star + 1, n = ++star_end;
+    } else {
+      return false;
+    }
   }
-  return !name.empty() && name.front() == pattern.front() && matches(name.substr(1), pattern.substr(1));
+  return pattern.find_first_not_of('*', p) == none;
 }
 
 }  // namespace
 
-std::string read_text(const fs::path& path) {
-  std::error_code none;
-  if (fs::is_directory(path, none)) {
-    errno = EISDIR;
-    fail("cannot_read", "read", path);
-  }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) fail("cannot_read", "read", path);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) fail("cannot_read", "read", path);
-  return text;
-}
+std::string read_text(const fs::path& path) { return read_file(path.string()); }
 
 void write_text(const fs::path& path, std::string_view text) {
   std::error_code problem;
+  // The new file would take the place of a device or a pipe.
+  if (const fs::file_status s = fs::status(path, problem); fs::exists(s) && !fs::is_regular_file(s))
+    cannot_write(path, fs::is_directory(s) ? std::strerror(EISDIR) : "it is not a regular file");
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), problem);
   fs::path temporary = path;
   temporary += fmt::format(".{}.tmp", ::getpid());
@@ -65,14 +65,13 @@ void write_text(const fs::path& path, std::string_view text) {
   if (!out) {
     const int reason = errno;
     fs::remove(temporary, problem);
-    errno = reason;
-    fail("cannot_write", "write", path);
+    cannot_write(path, std::strerror(reason));
   }
   fs::rename(temporary, path, problem);
   if (problem) {
-    errno = problem.value();
+    const std::string reason = problem.message();
     fs::remove(temporary, problem);
-    fail("cannot_write", "write", path);
+    cannot_write(path, reason);
   }
 }
 

@@ -24,8 +24,10 @@ void report_unknown(const Graph& graph, std::string_view address, Diagnostics& p
                 .file = graph.file});
 }
 
-// The ports that the graph's own outputs without a file name. Other names are of ports of graphs used as
-// nodes: they have a dot, or are the id that the nodes inside begin with.
+}  // namespace
+
+// Other names are of ports of graphs used as nodes: they have a dot, or are the id that the nodes inside
+// begin with.
 std::vector<PortRef> named_ports(const Graph& graph) {
   std::vector<PortRef> ports;
   for (const PortName& n : graph.port_names) {
@@ -36,8 +38,6 @@ std::vector<PortRef> named_ports(const Graph& graph) {
   }
   return ports;
 }
-
-}  // namespace
 
 Session::Session() : Session(Registry(all_node_types())) {}
 Session::Session(Registry registry) : registry_(std::move(registry)) {}

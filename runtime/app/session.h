@@ -40,6 +40,9 @@ class Session {
   bool check_ = false;
 };
 
+// The ports that the graph's own outputs without a file name.
+std::vector<PortRef> named_ports(const Graph&);
+
 // The end ports of a graph: every output port of the nodes that feed no other node.
 std::vector<PortRef> end_ports(const Graph&);
 

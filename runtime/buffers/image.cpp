@@ -82,9 +82,15 @@ Json plane_summary(const Raster& r, int plane) {
   return out;
 }
 
+// Counts and ids are integers; where an id plane shows no face it is null.
 Json json_value(const Tile& t, int plane, int sample, int x, int y) {
-  return with_type(t.frame().planes[static_cast<std::size_t>(plane)].kind, [&]<class T>(const T*) {
-    return json_number(t.row<const T>(plane, sample, y)[x - t.rect().x0]);
+  const Plane& p = t.frame().planes[static_cast<std::size_t>(plane)];
+  return with_type(p.kind, [&]<class T>(const T*) {
+    const T value = t.row<const T>(plane, sample, y)[x - t.rect().x0];
+    if constexpr (std::is_same_v<T, std::uint32_t>)
+      return p.name == "id" && value == no_face ? Json(nullptr) : Json(value);
+    else
+      return json_number(value);
   });
 }
 

@@ -15,14 +15,18 @@ int check(const Arguments& args, bool json) {
   const Session session;
   Diagnostics all;
   std::string good;
-  for (const std::string& path : args.graphs) {
-    const Loaded loaded = session.load(path, load_options({path, args.settings, {}}));
-    all.add(loaded.problems);
-    if (loaded.graph)
-      good += fmt::format("{}: {} nodes, {} outputs, no errors\n", path, loaded.graph->nodes.size(),
-                          loaded.graph->outputs.size());
-  }
-  const Exit exit = all.has_errors() ? bad_input : done;
+  bool world = false;
+  for (const std::string& path : args.graphs) try {
+      const Loaded loaded = session.load(path, load_options({path, args.settings, {}}));
+      all.add(loaded.problems);
+      if (loaded.graph)
+        good += fmt::format("{}: {} nodes, {} outputs, no errors\n", path, loaded.graph->nodes.size(),
+                            loaded.graph->outputs.size() + named_ports(*loaded.graph).size());
+    } catch (const WorldError& e) {  // of one file: the others are checked all the same
+      all.add({.code = e.code, .pointer = "", .message = e.what(), .file = path});
+      world = true;
+    }
+  const Exit exit = world ? world_failed : all.has_errors() ? bad_input : done;
   if (json) {
     print(with_diagnostics({{"ok", exit == done}}, all));
     return exit;

@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <cstring>
 
 namespace frustum::cli {
 
@@ -47,10 +49,12 @@ LoadOptions load_options(const GraphArguments& args) {
 }
 
 std::optional<Graph> load_or_report(const Session& session, const GraphArguments& args, bool json,
-                                    LoadOptions options) {
+                                    LoadOptions options, Diagnostics* warnings) {
   Loaded loaded = session.load(args.path, std::move(options));
   if (!loaded.graph)
     fail(loaded.problems, json);
+  else if (warnings != nullptr)
+    warnings->add(loaded.problems);
   else
     report(loaded.problems);
   return std::move(loaded.graph);
@@ -121,7 +125,7 @@ std::vector<int> integers(std::string_view option, std::string_view text, std::s
     if (problem != std::errc{}) break;
     out.push_back(value);
     at = next;
-    if (at == end || *at != ',') break;
+    if (at == end || *at != ',' || at + 1 == end) break;  // a comma at the end stays, and is refused
     ++at;
   }
   if (at != end || out.size() != count)
@@ -129,6 +133,9 @@ std::vector<int> integers(std::string_view option, std::string_view text, std::s
         fmt::format("{} {}: expected {} integers with commas between them", option, text, count));
   return out;
 }
+
+// A day of pictures at 24 a second has two million.
+constexpr int most_frame = 9'999'999;
 
 std::pair<int, int> frame_range(std::string_view text) {
   const auto parse = [&](std::string_view part) {
@@ -142,12 +149,30 @@ std::pair<int, int> frame_range(std::string_view text) {
   const int first = parse(text.substr(0, dash));
   const int last = dash == std::string_view::npos ? first : parse(text.substr(dash + 1));
   if (last < first) throw UsageError(fmt::format("--frames {}: the last frame comes before the first", text));
+  if (last > most_frame)
+    throw UsageError(fmt::format("--frames {}: the last frame is {} at most", text, most_frame));
   return {first, last};
 }
 
+namespace {
+int output_error = 0;  // of the first write to stdout that failed
+}
+
 void print(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  std::fflush(stdout);
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if ((!written || std::fflush(stdout) != 0) && output_error == 0) output_error = errno != 0 ? errno : EIO;
+}
+
+int exit_after_output(int code) {
+  if (std::fflush(stdout) != 0 && output_error == 0) output_error = errno != 0 ? errno : EIO;
+  if (output_error == 0 || output_error == EPIPE) return code;
+  Diagnostics problems;
+  problems.add(
+      {.code = "cannot_write_file",
+       .pointer = "",
+       .message = fmt::format("cannot write to the standard output: {}", std::strerror(output_error))});
+  report(problems);
+  return world_failed;
 }
 
 void print(const Json& object) { print(object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"); }
@@ -164,6 +189,7 @@ Json with_diagnostics(Json object, const Diagnostics& problems) {
 }
 
 int fail(const Diagnostics& problems, bool json, Exit exit) {
+  if (exit == cancelled) std::fputs("cancelled\n", stderr);
   if (json)
     print(to_json(problems));
   else

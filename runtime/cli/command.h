@@ -61,8 +61,9 @@ struct GraphArguments {
 void add_graph_arguments(CLI::App&, GraphArguments&);
 LoadOptions load_options(const GraphArguments&);  // throws UsageError for a --set without '='
 
-// The graph, or its problems printed and no graph. Warnings are printed and the graph returned.
-std::optional<Graph> load_or_report(const Session&, const GraphArguments&, bool json, LoadOptions);
+// The graph, or its problems printed and no graph. Warnings of a graph are printed, or added to `warnings`.
+std::optional<Graph> load_or_report(const Session&, const GraphArguments&, bool json, LoadOptions,
+                                    Diagnostics* warnings = nullptr);
 
 // ----- how a run goes
 struct RunArguments {
@@ -95,7 +96,7 @@ std::vector<int> integers(std::string_view option, std::string_view text, std::s
 std::pair<int, int> frame_range(std::string_view text);
 
 // ----- what is said
-void print(const std::string& text);  // stdout
+void print(const std::string& text);  // stdout; what fails is kept for exit_after_output
 void print(const Json& object);       // stdout, one object
 void report(const Diagnostics&);      // as text on stderr
 // {"diagnostics": [...]} merged into `object`.
@@ -103,13 +104,19 @@ Json with_diagnostics(Json object, const Diagnostics&);
 // Prints the problems, as JSON on stdout or as text on stderr, and gives `exit`.
 int fail(const Diagnostics&, bool json, Exit exit = bad_input);
 int exit_code(const RunResult&);
+// `code`, or 3 with a message where a part of what was printed is lost. A reader that went away has what it
+// wants: that is no failure.
+int exit_after_output(int code);
 
 // ----- the terminal
 bool color_on_stderr();
 bool progress_on_stderr();
 
-// Set by SIGINT and SIGTERM; a second signal ends the process at once.
+// Set by SIGINT, SIGTERM and SIGHUP; a second signal ends the process at once.
 CancelFlag& cancel_flag();
 void catch_signals();
+// Where a standard stream is closed, its number would go to the first file that is opened, and messages into
+// that file. Takes the number, so that each use of the stream fails.
+void hold_standard_streams();
 
 }  // namespace frustum::cli

@@ -57,7 +57,10 @@ int diff(const Arguments& args, bool json) {
   for (const MetricBound& bound : broken(m, bounds)) {
     failed.push_back({{"metric", bound.metric}, {"tolerance", bound.tolerance}});
     const Metric& metric = *find_metric(bound.metric);
-    if (m.difference.mismatch.empty() && !metric.yes_or_no)
+    if (!m.difference.mismatch.empty()) continue;  // says why already
+    if (metric.yes_or_no)
+      text += fmt::format("does not hold: {}\n", bound.metric);
+    else
       text += fmt::format("does not hold: {} {} {}\n", bound.metric,
                           metric.at_least ? ">=" : "<=", bound.tolerance);
   }

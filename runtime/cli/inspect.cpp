@@ -11,10 +11,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
 
 namespace frustum::cli {
 namespace {
+
+constexpr std::int64_t most_rows = std::int64_t{1} << 40;
 
 struct Arguments {
   GraphArguments graph;
@@ -31,6 +33,7 @@ bool is_scalar_list(const Json& j) {
 
 std::string scalar(const Json& j) {
   if (j.is_string()) return j.get<std::string>();
+  if (j.is_null()) return "none";
   if (j.is_number_float()) return fmt::format("{:.9g}", j.get<double>());
   if (!is_scalar_list(j)) return j.dump();
   std::vector<std::string> items;
@@ -93,28 +96,29 @@ std::string lines(const Json& object, int indent = 0) {
   return out;
 }
 
-Json number(double v) {  // JSON has no infinities and no NaN
-  if (std::isfinite(v)) return v;
-  return fmt::format("{}", v);
-}
-
-// {"samples": [{"sample": 0, "R": ..., "G": ...}]} with every plane.
-Json pixel_json(const Raster& raster, int x, int y) {
-  Json samples = Json::array();
-  for (int s = 0; s < raster.frame().samples(); ++s) {
-    Json row = {{"sample", s}};
-    for (std::size_t p = 0; p < raster.frame().planes.size(); ++p)
-      row[raster.frame().planes[p].name] = number(raster.value(static_cast<int>(p), s, x, y));
-    samples.push_back(std::move(row));
-  }
-  return {{"x", x}, {"y", y}, {"samples", samples}};
-}
-
 Json table_json(const Buffer& buffer, std::size_t first, std::size_t count) {
   const Json table =
       buffer.type().table != nullptr ? buffer.type().table(buffer.data(), first, count) : Json(nullptr);
   if (table.is_null()) throw NodeError("no_table", fmt::format("a {} has no table form", buffer.type().name));
   return table;
+}
+
+// {"samples": [{"sample": 0, "R": ..., "G": ...}]} with every plane: the rows of the buffer's table that
+// are this pixel.
+Json pixel_json(const Buffer& buffer, int x, int y) {
+  const Frame& frame = buffer.type().raster(buffer.data()).frame();
+  const auto count = static_cast<std::size_t>(frame.samples()), planes = frame.planes.size();
+  const auto row = static_cast<std::size_t>(y - frame.window.y0),
+             column = static_cast<std::size_t>(x - frame.window.x0);
+  const Json table =
+      table_json(buffer, (row * static_cast<std::size_t>(frame.window.width()) + column) * count, count);
+  Json samples = Json::array();
+  for (const Json& cells : table["rows"]) {
+    Json sample = {{"sample", samples.size()}};
+    for (std::size_t p = 0; p < planes; ++p) sample[frame.planes[p].name] = cells[cells.size() - planes + p];
+    samples.push_back(std::move(sample));
+  }
+  return {{"x", x}, {"y", y}, {"samples", samples}};
 }
 
 std::string table_text(const Json& table, std::size_t first) {
@@ -142,9 +146,8 @@ Json header_json(const std::string& name, const Buffer& buffer) {
 }
 
 int show_provenance(Session& session, const Graph& graph, PortRef port, const Arguments& args,
-                    RunOptions options, bool json) {
+                    RunOptions options, Diagnostics& problems, bool json) {
   const auto at = integers("--provenance", args.provenance, 2);
-  Diagnostics problems;
   RunResult::End end{};
   const auto found = provenance(session, graph, port, at[0], at[1], std::move(options), problems, end);
   if (!found) {
@@ -153,13 +156,14 @@ int show_provenance(Session& session, const Graph& graph, PortRef port, const Ar
     return fail(problems, json, static_cast<Exit>(exit_code(failed)));
   }
   if (json)
-    print(to_json(*found));
+    print(with_diagnostics(to_json(*found), problems));
   else
-    print(to_text(*found));
+    report(problems), print(to_text(*found));
   return done;
 }
 
-int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Arguments& args, bool json) {
+int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Arguments& args,
+                const Diagnostics& warnings, bool json) {
   Json out = header_json(graph.name(port), buffer);
   std::string text;
   if (!args.pixel.empty()) {
@@ -168,7 +172,7 @@ int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Ar
     if (raster == nullptr) throw NodeError("not_pixels", fmt::format("{} holds no pixels", graph.name(port)));
     if (!raster->frame().window.contains(at[0], at[1]))
       throw NodeError("outside_window", fmt::format("pixel {},{} lies outside the picture", at[0], at[1]));
-    out["pixel"] = pixel_json(*raster, at[0], at[1]);
+    out["pixel"] = pixel_json(buffer, at[0], at[1]);
     text += object_table(out["pixel"]["samples"], 0);
   }
   if (args.table) {
@@ -192,29 +196,28 @@ int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Ar
     text += args.save + "\n";
   }
   if (json)
-    print(out);
+    print(with_diagnostics(std::move(out), warnings));
   else
-    print(text);
+    report(warnings), print(text);
   return done;
 }
 
 int inspect(const Arguments& args, bool json) {
   Session session;
-  const auto graph = load_or_report(session, args.graph, json, load_options(args.graph));
+  Diagnostics warnings, problems;
+  const auto graph = load_or_report(session, args.graph, json, load_options(args.graph), &warnings);
   if (!graph) return bad_input;
-  Diagnostics problems;
   const auto port = port_of(*graph, args.port, problems);
   if (!port) return fail(problems, json);
   RunOptions options;
   apply(args.run, options);
   options.cancel = &cancel_flag();
-  if (!args.provenance.empty()) return show_provenance(session, *graph, *port, args, options, json);
+  if (!args.provenance.empty()) return show_provenance(session, *graph, *port, args, options, warnings, json);
   options.demand.ports = {*port};
   const RunResult result = session.run(*graph, options);
-  if (result.end != RunResult::End::done)
-    return fail(result.problems, json, static_cast<Exit>(exit_code(result)));
-  report(result.problems);
-  return show_buffer(*graph, *port, result.buffers.at(*port), args, json);
+  warnings.add(result.problems);
+  if (result.end != RunResult::End::done) return fail(warnings, json, static_cast<Exit>(exit_code(result)));
+  return show_buffer(*graph, *port, result.buffers.at(*port), args, warnings, json);
 }
 
 }  // namespace
@@ -234,8 +237,13 @@ void add_inspect(CLI::App& app, Invocation& chosen) {
                "The pixel's samples, their triangles, and the node that made them.")
       ->type_name("X,Y");
   c.add_flag("--table", args->table, "The values as rows.");
-  c.add_option("--first", args->first, "The first row of the table.")->type_name("ROW");
-  c.add_option("--rows", args->rows, "Rows of the table.")->capture_default_str()->type_name("N");
+  c.add_option("--first", args->first, "The first row of the table.")
+      ->check(quiet(CLI::Range(std::int64_t{0}, most_rows)))
+      ->type_name("ROW");
+  c.add_option("--rows", args->rows, "Rows of the table.")
+      ->check(quiet(CLI::Range(std::int64_t{1}, most_rows)))
+      ->capture_default_str()
+      ->type_name("N");
   c.add_option("--save", args->save,
                "Pixels to an image file (.exr keeps every plane), a mesh to .ply, .obj or .glb, any buffer "
                "to .csv or .json.")

@@ -79,11 +79,16 @@ int unexpected(const CLI::App& app, bool json) {
                      nearest_names(name, option_names(command)), help, json);
 }
 
-int run_body(const Invocation& chosen) {
+std::string help_of(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? "frustum --help" : fmt::format("frustum {} --help", commands.front()->get_name());
+}
+
+int run_body(const CLI::App& app, const Invocation& chosen) {
   try {
     return chosen.body();
   } catch (const UsageError& e) {
-    return usage_error(e.what(), {}, "frustum --help", chosen.json);
+    return usage_error(e.what(), {}, help_of(app), chosen.json);
   } catch (const WorldError& e) {
     return world_error(e.code, e.what(), chosen.json);
   } catch (const NodeError& e) {
@@ -91,11 +96,13 @@ int run_body(const Invocation& chosen) {
     problems.add({.code = e.code, .pointer = "", .message = e.what()});
     return fail(problems, chosen.json);
   } catch (const Cancelled&) {
-    return cancelled;
+    return fail({}, chosen.json, cancelled);
   } catch (const std::bad_alloc&) {
     return world_error("out_of_memory", "there is not enough memory", chosen.json);
   } catch (const std::exception& e) {
-    return world_error("internal", fmt::format("this is a fault of frustum: {}", e.what()), chosen.json);
+    spdlog::debug("{}", e.what());  // the text of a library, of no use without the source
+    return world_error("internal", "this is a fault of frustum, which met an error that it does not know",
+                       chosen.json);
   }
 }
 
@@ -121,7 +128,10 @@ int main_(int argc, char** argv) {
     print(app.help() + "\n");  // of the command that was named, if one was
     return done;
   } catch (const CLI::CallForVersion& e) {
-    print(std::string(e.what()) + "\n");
+    if (chosen.json)
+      print(Json{{"version", version}, {"build", build_id()}});
+    else
+      print(std::string(e.what()) + "\n");
     return done;
   } catch (const CLI::ExtrasError&) {
     return unexpected(app, chosen.json);
@@ -132,15 +142,15 @@ int main_(int argc, char** argv) {
     }
     const auto commands = app.get_subcommands();
     if (commands.empty() && !app.remaining().empty()) return unexpected(app, chosen.json);
-    return usage_error(
-        e.what(), {},
-        commands.empty() ? "frustum --help" : fmt::format("frustum {} --help", commands.front()->get_name()),
-        chosen.json);
+    return usage_error(e.what(), {}, help_of(app), chosen.json);
   }
-  return run_body(chosen);
+  return run_body(app, chosen);
 }
 
 }  // namespace
 }  // namespace frustum::cli
 
-int main(int argc, char** argv) { return frustum::cli::main_(argc, argv); }
+int main(int argc, char** argv) {
+  frustum::cli::hold_standard_streams();
+  return frustum::cli::exit_after_output(frustum::cli::main_(argc, argv));
+}

@@ -1,4 +1,4 @@
-// frustum nodes [TYPE]: the catalogue, or one node in full.
+// frustum nodes [TYPE]: the catalogue, a family of it, or one node in full.
 #include "runtime/app/catalog.h"
 #include "runtime/app/text.h"
 #include "runtime/cli/command.h"
@@ -14,13 +14,13 @@ namespace {
 
 constexpr std::size_t page_width = 100;
 
-std::string catalogue_text(const Registry& registry) {
+std::string catalogue_text(const std::vector<const NodeType*>& types) {
   std::string out, family;
-  for (const auto& [name, type] : registry) {
-    const std::string mine = name.substr(0, name.find('.'));
+  for (const NodeType* type : types) {
+    const std::string mine = type->name.substr(0, type->name.find('.'));
     if (mine != family) out += (out.empty() ? "" : "\n") + mine + "\n";
     family = mine;
-    out += fmt::format("  {:<24} {}\n", name, wrapped(type.doc, page_width - 27, 27));
+    out += fmt::format("  {:<24} {}\n", type->name, wrapped(type->doc, page_width - 27, 27));
   }
   return out;
 }
@@ -93,16 +93,24 @@ int knobs(const Registry& registry, const NodeType* only, bool json) {
   return done;
 }
 
+std::vector<const NodeType*> types_of(const Registry& registry, const std::string& family) {
+  std::vector<const NodeType*> out;
+  for (const auto& [name, type] : registry)
+    if (family.empty() || name.starts_with(family + ".")) out.push_back(&type);
+  return out;
+}
+
 int nodes(const std::string& wanted, bool only_knobs, bool json) {
   const Session session;
   if (only_knobs && wanted.empty()) return knobs(session.registry(), nullptr, json);
-  if (wanted.empty()) {
-    if (!json) return print(catalogue_text(session.registry())), done;
+  const NodeType* type = session.registry().find(wanted);
+  const auto family = type == nullptr ? types_of(session.registry(), wanted) : std::vector<const NodeType*>{};
+  if (!family.empty()) {
+    if (!json) return print(catalogue_text(family)), done;
     Json list = Json::array();
-    for (const auto& [name, type] : session.registry()) list.push_back(node_json(type));
+    for (const NodeType* t : family) list.push_back(node_json(*t));
     return print(Json{{"nodes", list}}), done;
   }
-  const NodeType* type = session.registry().find(wanted);
   if (type == nullptr) {
     Diagnostics problems;
     problems.add({.code = "unknown_type",
@@ -125,10 +133,10 @@ int nodes(const std::string& wanted, bool only_knobs, bool json) {
 void add_nodes(CLI::App& app, Invocation& chosen) {
   auto wanted = std::make_shared<std::string>();
   auto only_knobs = std::make_shared<bool>(false);
-  CLI::App& c = add_command(
-      app, chosen, "nodes", "Lists the node types, or shows one in full.", "frustum nodes clip.homogeneous",
-      [wanted, only_knobs, &chosen] { return nodes(*wanted, *only_knobs, chosen.json); });
-  c.add_option("type", *wanted, "A node type.")->type_name("TYPE");
+  CLI::App& c = add_command(app, chosen, "nodes", "Lists the node types, those of a family, or shows one in full.",
+                            "frustum nodes clip.homogeneous",
+                            [wanted, only_knobs, &chosen] { return nodes(*wanted, *only_knobs, chosen.json); });
+  c.add_option("type", *wanted, "A node type, or a family of them such as clip.")->type_name("TYPE");
   c.add_flag("--knobs", *only_knobs,
              "Only the parameters that trade accuracy for time, from cheap to exact.");
 }

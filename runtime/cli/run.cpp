@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <tuple>
 
 namespace frustum::cli {
 namespace {
@@ -88,6 +89,16 @@ std::vector<NodeCaching> bypassed(const Graph& graph) {
   return list;
 }
 
+// Every frame has the same warnings.
+void add_new(const Diagnostics& more, Diagnostics& to) {
+  for (const Diagnostic& d : more.list()) {
+    const auto same = [&](const Diagnostic& o) {
+      return std::tie(o.code, o.file, o.pointer, o.message) == std::tie(d.code, d.file, d.pointer, d.message);
+    };
+    if (std::none_of(to.list().begin(), to.list().end(), same)) to.add(d);
+  }
+}
+
 // One run of one frame; the outcome gathers over frames and repetitions.
 void run_once(Session& session, const Graph& graph, const RunOptions& options, bool keep, Outcome& o) {
   const auto began = std::chrono::steady_clock::now();
@@ -102,20 +113,38 @@ void run_once(Session& session, const Graph& graph, const RunOptions& options, b
   if (r.cache_differs) o.cache_differs = true;
   if (!keep) o.caching = bypassed(graph);
   if (!o.culprit) o.culprit = r.culprit;
-  if (o.times.size() == 1 || keep) o.problems.add(r.problems);
+  add_new(r.problems, o.problems);
+}
+
+// Each frame would write over the one before.
+void check_names_of_frames(const Graph& graph, const Demand& demand, Diagnostics& problems) {
+  for (const std::size_t i : demand.outputs) {
+    const GraphOutput& output = graph.outputs[i];
+    if (output.file.find("{frame}") != std::string::npos) continue;
+    problems.add({.code = "file_without_frame",
+                  .pointer = output.place.pointer + "/file",
+                  .message = fmt::format("--frames writes every frame of output '{}' to the same file '{}'",
+                                         output.name, output.file),
+                  .expected = "a file name with {frame}",
+                  .got = output.file,
+                  .file = output.place.file,
+                  .line = output.place.line,
+                  .column = output.place.column});
+  }
 }
 
 // Loads the graph for one frame and runs it. False where the rest is not worth trying.
-bool run_frame(Session& session, const Arguments& args, bool keep, std::optional<int> frame,
+bool run_frame(Session& session, const Arguments& args, bool keep, std::optional<int> frame, bool one_of_many,
                Listeners& listeners, Outcome& o) {
   LoadOptions load = load_options(args.graph);
   load.frame = frame;
   Loaded loaded = session.load(args.graph.path, std::move(load));
-  o.problems.add(loaded.problems);
+  add_new(loaded.problems, o.problems);
   if (!loaded.graph) return o.code = bad_input, false;
   RunOptions options;
   apply(args.run, options);
   options.demand = demand_of(*loaded.graph, args.wanted, o.problems);
+  if (one_of_many) check_names_of_frames(*loaded.graph, options.demand, o.problems);
   if (o.problems.has_errors()) return o.code = bad_input, false;
   options.out_folder = args.out;
   options.frame = frame;
@@ -139,12 +168,6 @@ void print_steps(const StepTimes& steps, const Outcome& o) {
 
 void print_text(const Outcome& o, const Listeners& l, std::chrono::nanoseconds total) {
   report(o.problems);
-  if (o.culprit)
-    std::fputs(fmt::format("warning: {}.{} made the first NaN or infinity ({}){}\n", o.culprit->node,
-                           o.culprit->port, o.culprit->where,
-                           o.culprit->inputs.empty() ? "" : "; its inputs: " + o.culprit->inputs)
-                   .c_str(),
-               stderr);
   if (o.code == cancelled) std::fputs("cancelled\n", stderr);
   if (o.code != done && o.code != check_failed) return;
   for (const std::string& f : o.files) print(f + "\n");
@@ -197,11 +220,11 @@ int run(const Arguments& args, bool json) {
   attach(listeners, args);
   Outcome outcome;
   if (args.frames.empty()) {
-    run_frame(session, args, keep, std::nullopt, listeners, outcome);
+    run_frame(session, args, keep, std::nullopt, false, listeners, outcome);
   } else {
     const auto [first, last] = frame_range(args.frames);
     for (int frame = first; frame <= last; ++frame)
-      if (!run_frame(session, args, keep, frame, listeners, outcome)) break;
+      if (!run_frame(session, args, keep, frame, last > first, listeners, outcome)) break;
   }
   if (outcome.code == done && outcome.cache_differs) outcome.code = check_failed;
   listeners.bar.reset();

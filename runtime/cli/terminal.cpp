@@ -1,7 +1,9 @@
 #include "runtime/cli/command.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <string_view>
@@ -40,6 +42,15 @@ bool progress_on_stderr() { return terminal(); }
 
 CancelFlag& cancel_flag() { return cancel; }
 
+void hold_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
+    const int taken =
+        ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // the lowest free number
+    if (taken != stream) std::_Exit(Exit::world_failed);
+  }
+}
+
 void catch_signals() {
   struct sigaction action {};
   action.sa_handler = on_signal;
@@ -47,6 +58,10 @@ void catch_signals() {
   action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // The terminal went away; under nohup that is ignored, and stays so.
+  struct sigaction before {};
+  if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+    sigaction(SIGHUP, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is a failed write, not the end of the process
 }
 

@@ -63,25 +63,54 @@ Json to_json(const Related& r) {
           {"message", r.message}};
 }
 
-// Edits between two words, a swap of neighbours counting one (optimal string alignment), or limit + 1 where there are
-// more than `limit`. Damerau 1964; restricted so that no substring is edited twice. O(|a| |b|).
-std::size_t edits(std::string_view a, std::string_view b, std::size_t limit) {
-  const std::size_t longer = std::max(a.size(), b.size()), shorter = std::min(a.size(), b.size());
-  if (longer - shorter > limit) return limit + 1;
-  std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) above[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replace = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      row[j] = std::min({replace, above[j] + 1, row[j - 1] + 1});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        row[j] = std::min(row[j], before[j - 2] + 1);
+// Edits between two words, a swap of neighbours counting one (optimal string alignment), or limit + 1 where
+// there are more than `limit`. Damerau 1964; restricted so that no substring is edited twice. Cells further
+// than `limit` from the diagonal count more than that and are left out (Ukkonen 1985), so the cost is |a|
+// (2 limit + 1).
+class EditCounter {
+ public:
+  std::size_t operator()(std::string_view a, std::string_view b, std::size_t limit) {
+    const std::size_t longer = std::max(a.size(), b.size()), shorter = std::min(a.size(), b.size());
+    if (longer - shorter > limit) return limit + 1;
+    const std::size_t far = limit + 1;
+    before_.assign(b.size() + 1, far), row_ = above_ = before_;
+    for (std::size_t j = 0; j <= std::min(b.size(), limit); ++j) above_[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+      const std::size_t first = i > limit ? i - limit : 1, last = std::min(b.size(), i + limit);
+      row_[first - 1] = first == 1 ? i : far;
+      std::size_t least = row_[first - 1];
+      for (std::size_t j = first; j <= last; ++j) {
+        const std::size_t replace = above_[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+        row_[j] = std::min({replace, above_[j] + 1, row_[j - 1] + 1, far});
+        if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+          row_[j] = std::min(row_[j], before_[j - 2] + 1);
+        least = std::min(least, row_[j]);
+      }
+      if (last < b.size()) row_[last + 1] = far;
+      if (least > limit) return far;
+      std::swap(before_, above_);
+      std::swap(above_, row_);
     }
-    std::swap(before, above);
-    std::swap(above, row);
+    return std::min(above_[b.size()], far);
   }
-  return above[b.size()];
+
+ private:
+  std::vector<std::size_t> before_, above_, row_;
+};
+
+// The letters in which two addresses can differ: without the family, node or graph that both begin with.
+std::size_t own_letters(std::string_view a, std::string_view b) {
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()) && a[i] == b[i]; ++i)
+    if (a[i] == '.' || a[i] == ':' || a[i] == '/' || a[i] == '$') same = i + 1;
+  return std::max(a.size(), b.size()) - same;
+}
+
+// Whether so few edits make a name that was meant and not only another short one.
+bool is_near(std::string_view name, std::string_view known, std::size_t count) {
+  const std::size_t letters = own_letters(name, known);
+  if (letters < 3) return count == 1 && name.size() == known.size();
+  return 2 * count < letters;
 }
 
 }  // namespace
@@ -142,12 +171,15 @@ std::vector<std::string> nearest_names(std::string_view name, std::span<const st
   if (name.empty() || name.size() > longest) return {};
   const std::size_t limit = std::max<std::size_t>(1, name.size() / 3);
   std::vector<std::pair<std::size_t, const std::string*>> near;
+  EditCounter edits;
   for (const std::string& k : known)
-    if (const std::size_t n = edits(name, k, limit); n <= limit) near.emplace_back(n, &k);
+    if (const std::size_t n = edits(name, k, limit); n <= limit && is_near(name, k, n))
+      near.emplace_back(n, &k);
   std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   if (near.size() > most) near.resize(most);
   std::vector<std::string> out;
-  for (const auto& [n, k] : near) out.push_back(*k);
+  for (const auto& [n, k] : near)
+    if (n <= near.front().first + 1) out.push_back(*k);  // beside a near name, far ones only distract
   return out;
 }
 

@@ -27,6 +27,10 @@ std::string temporary_name(const std::filesystem::path& path) {
 
 PartialFile::PartialFile(const std::string& path) : path_(path), temporary_(temporary_name(path)) {
   std::error_code error;
+  // The new file would take the place of a device or a pipe.
+  if (const auto there = std::filesystem::status(path, error);
+      std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
+    throw WorldError("cannot_write_file", fmt::format("cannot write {}: it is not a regular file", path));
   if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty())
     std::filesystem::create_directories(folder, error);
   const int fd = open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

@@ -1,14 +1,14 @@
 #include "runtime/graph/document.h"
 
+#include "runtime/core/read_file.h"
+#include "runtime/graph/document_reader.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-
-#include "runtime/graph/document_reader.h"
 
 namespace frustum {
 namespace {
@@ -98,16 +98,6 @@ std::string quoted_json(const Json& value) {
   return s.substr(0, end) + "...";
 }
 
-std::string read_text_file(const std::string& path) {
-  std::error_code error;
-  if (fs::is_directory(path, error))
-    throw WorldError("cannot_read_file", fmt::format("{} is a folder", path));
-  std::ifstream in(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in.is_open() || in.bad()) throw WorldError("cannot_read_file", fmt::format("{} cannot be read", path));
-  return text;
-}
-
 Documents::Documents(const Registry& registry, std::vector<std::string> library_folders,
                      Diagnostics& problems, SavedAs saved_as)
     : registry_(registry),
@@ -130,7 +120,16 @@ std::shared_ptr<const Document> Documents::read(std::string text, const std::str
   return doc;
 }
 
+std::vector<std::string> Documents::suggestions(std::string_view name,
+                                                const std::function<std::vector<std::string>()>& known) {
+  if (letters_left_ == 0) return {};
+  const std::vector<std::string> names = known();
+  letters_left_ -= std::min(letters_left_, names.size() * (name.size() * name.size() + 1));
+  return nearest_names(name, names);
+}
+
 std::string Documents::find_library(std::string_view name) const {
+  if (name.find_first_of("/.") != std::string_view::npos) return {};  // would lead out of the library
   std::error_code error;
   for (const std::string& folder : library_folders_) {
     const fs::path path = fs::path(folder) / fmt::format("{}.json", name);
@@ -151,6 +150,35 @@ std::vector<std::string> Documents::library_names() const {
   return names;
 }
 
+bool Documents::too_deep(std::size_t levels, const std::string& name, const SourceText& user,
+                         const std::string& pointer) {
+  if (opening_.size() + levels <= max_levels) return false;
+  report(
+      problems_, user,
+      {.code = "too_deep",
+       .pointer = pointer,
+       .message = fmt::format("graphs used as nodes stand inside each other more than {} levels deep at '{}'",
+                              max_levels, name),
+       .expected = fmt::format("at most {} levels", max_levels),
+       .got = name});
+  return true;
+}
+
+namespace {
+
+// Why a graph used as a node is not there.
+std::string why_missing(const std::string& name, const std::string& path, bool library) {
+  if (library && name.find_first_of("/.", library_prefix.size()) != std::string::npos)
+    return fmt::format("'{}' is not the name of a library graph: it has neither slashes nor dots", name);
+  if (library) return fmt::format("the library has no graph '{}'", name);
+  std::error_code error;
+  if (fs::is_directory(path, error)) return fmt::format("'{}' is a folder, not a graph file", name);
+  if (fs::exists(path, error)) return fmt::format("'{}' is not a regular file", name);
+  return fmt::format("there is no file '{}'", name);
+}
+
+}  // namespace
+
 std::shared_ptr<const Document> Documents::open(const std::string& name, const std::string& folder,
                                                 const SourceText& user, const std::string& pointer) {
   const bool library = name.starts_with(library_prefix);
@@ -159,19 +187,21 @@ std::shared_ptr<const Document> Documents::open(const std::string& name, const s
   std::error_code error;
   if (!fs::is_regular_file(path, error)) {
     const std::vector<std::string> near =
-        library ? nearest_names(name, library_names()) : std::vector<std::string>{};
+        library ? suggestions(name, [&] { return library_names(); }) : std::vector<std::string>{};
     report(problems_, user,
            {.code = "missing_file",
             .pointer = pointer,
-            .message = library ? fmt::format("the library has no graph '{}'", name)
-                               : fmt::format("there is no file '{}'", name),
+            .message = why_missing(name, path, library),
             .expected = library ? "a graph of the library" : "a graph file",
             .got = name,
             .suggestions = near});
     return nullptr;
   }
   const std::string canonical = fs::weakly_canonical(path, error).string();
-  if (const auto known = opened_.find(canonical); known != opened_.end()) return known->second;
+  if (const auto known = opened_.find(canonical); known != opened_.end()) {
+    const bool deep = known->second != nullptr && too_deep(known->second->levels, name, user, pointer);
+    return deep ? nullptr : known->second;
+  }
 
   const auto same = [&](const auto& o) { return o.first == canonical; };
   if (const auto outer = std::find_if(opening_.begin(), opening_.end(), same); outer != opening_.end()) {
@@ -187,9 +217,10 @@ std::shared_ptr<const Document> Documents::open(const std::string& name, const s
             .got = name});
     return nullptr;
   }
+  if (too_deep(1, name, user, pointer)) return nullptr;
   std::string text;
   try {
-    text = read_text_file(path);
+    text = read_file(path);
   } catch (const WorldError& e) {
     report(problems_, user,
            {.code = "missing_file",

@@ -6,6 +6,7 @@
 #include "runtime/core/sink.h"
 #include "runtime/graph/source_text.h"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -86,6 +87,7 @@ struct Document {
   std::vector<DocumentOutput> outputs;
   std::unordered_map<std::string, std::size_t> node_index;
   std::set<std::string, std::less<>> params_used;  // by "$name"
+  std::size_t levels = 1;  // of graphs used as nodes, one inside the other, this one counted
 
   const std::string& file() const { return text->file(); }
   const WrittenParam* find_param(std::string_view name) const;
@@ -124,7 +126,18 @@ class Documents {
     return saved_as_ ? saved_as_(kind) : std::vector<std::string>();
   }
 
+  // nearest_names among `known()`, which is called only while there is work left: of ten thousand unknown
+  // names among ten thousand known ones the first few hundred have suggestions.
+  std::vector<std::string> suggestions(std::string_view name,
+                                       const std::function<std::vector<std::string>()>& known);
+
+  // Graphs stand inside each other at most so deep, so that what walks down them needs a bounded stack.
+  static constexpr std::size_t max_levels = 256;
+
  private:
+  // Where `levels` more below the files being read are too many: reports that, and true.
+  bool too_deep(std::size_t levels, const std::string& name, const SourceText& user,
+                const std::string& pointer);
   std::string find_library(std::string_view name) const;
   std::vector<std::string> library_names() const;
 
@@ -133,11 +146,9 @@ class Documents {
   Diagnostics& problems_;
   SavedAs saved_as_;
   Kinds kinds_;
+  std::size_t letters_left_ = 100'000'000;  // to compare for suggestions: about a second
   std::map<std::string, std::shared_ptr<const Document>> opened_;  // by canonical path
   std::vector<std::pair<std::string, std::string>> opening_;       // canonical path and name, outermost first
 };
-
-// The whole text of a file. Throws WorldError where it cannot be read.
-std::string read_text_file(const std::string& path);
 
 }  // namespace frustum

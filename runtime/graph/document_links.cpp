@@ -78,9 +78,11 @@ void DocumentReader::resolve(Link& link, bool list) {
   }
   const auto found = doc_->node_index.find(id);
   if (found == doc_->node_index.end()) {
-    std::vector<std::string> ids;
-    for (const DocumentNode& n : doc_->nodes) ids.push_back(n.id);
-    const std::vector<std::string> near = nearest_names(id, ids);
+    const std::vector<std::string> near = documents_.suggestions(id, [&] {
+      std::vector<std::string> ids;
+      for (const DocumentNode& n : doc_->nodes) ids.push_back(n.id);
+      return ids;
+    });
     for (const std::string& n : near) mark_used(n);
     problem({.code = "unknown_node",
              .pointer = link.pointer,
@@ -98,28 +100,26 @@ void DocumentReader::resolve(Link& link, bool list) {
 
 void DocumentReader::resolve_input(Link& link, bool list) {
   const std::string name = link.text.substr(1);
-  std::vector<std::string> names;
   for (std::size_t i = 0; i < doc_->inputs.size(); ++i) {
-    if (doc_->inputs[i].name == name) {
-      doc_->inputs[i].used = true;
-      if (doc_->inputs[i].list && !list) return wrong_type(link.pointer, "one link, not a list", link.text);
-      link.input = i;
-      return;
-    }
-    names.push_back("$" + doc_->inputs[i].name);
+    if (doc_->inputs[i].name != name) continue;
+    doc_->inputs[i].used = true;
+    if (doc_->inputs[i].list && !list) return wrong_type(link.pointer, "one link, not a list", link.text);
+    link.input = i;
+    return;
   }
-  const std::vector<std::string> near = nearest_names(link.text, names);
+  std::vector<std::string> names;
+  for (const DocumentInput& input : doc_->inputs) names.push_back("$" + input.name);
+  const std::vector<std::string> near = documents_.suggestions(link.text, [&] { return names; });
   for (DocumentInput& input : doc_->inputs)
     input.used |= std::find(near.begin(), near.end(), "$" + input.name) != near.end();
   const bool param = doc_->find_param(name) != nullptr;
-  problem(
-      {.code = "unknown_input",
-       .pointer = link.pointer,
-       .message = param ? fmt::format("'{}' is a parameter of the graph, not an input", name)
-                        : fmt::format("the graph has no input '{}' for '{}'", name, link.text),
-       .expected = names.empty() ? "a graph with inputs" : fmt::format("one of: {}", fmt::join(names, ", ")),
-       .got = link.text,
-       .suggestions = near});
+  problem({.code = "unknown_input",
+           .pointer = link.pointer,
+           .message = param ? fmt::format("'{}' is a parameter of the graph, not an input", name)
+                            : fmt::format("the graph has no input '{}' for '{}'", name, link.text),
+           .expected = names.empty() ? "a graph with inputs" : one_of(names),
+           .got = link.text,
+           .suggestions = near});
 }
 
 // Fills link.port, or takes link.node away again where there is no such port.
@@ -149,17 +149,16 @@ void DocumentReader::resolve_port(Link& link, const DocumentNode& node, std::str
   link.node.reset();
   std::vector<std::string> names, suggestions;
   for (const Candidate& c : ports) names.push_back(c.name);
-  for (const std::string& near : nearest_names(port, names))
+  for (const std::string& near : documents_.suggestions(port, [&] { return names; }))
     suggestions.push_back(fmt::format("{}.{}", node.id, near));
-  problem(
-      {.code = "unknown_output",
-       .pointer = link.pointer,
-       .message = port.empty() ? fmt::format("{} has no output", kind_of(node))
-                               : fmt::format("{} has no output '{}'", kind_of(node), port),
-       .expected = names.empty() ? "a node with outputs" : fmt::format("one of: {}", fmt::join(names, ", ")),
-       .got = std::string(port),
-       .suggestions = suggestions,
-       .related = {{.pointer = node.pointer, .message = fmt::format("'{}' stands here", node.id)}}});
+  problem({.code = "unknown_output",
+           .pointer = link.pointer,
+           .message = port.empty() ? fmt::format("{} has no output", kind_of(node))
+                                   : fmt::format("{} has no output '{}'", kind_of(node), port),
+           .expected = names.empty() ? "a node with outputs" : one_of(names),
+           .got = std::string(port),
+           .suggestions = suggestions,
+           .related = {{.pointer = node.pointer, .message = fmt::format("'{}' stands here", node.id)}}});
 }
 
 }  // namespace frustum

@@ -32,11 +32,14 @@ std::vector<std::string> params_of(const DocumentNode& node) {
   return out;
 }
 
-std::string one_of(const std::vector<std::string>& names) {
-  return names.empty() ? "none" : fmt::format("one of: {}", fmt::join(names, ", "));
-}
-
 }  // namespace
+
+std::string one_of(std::span<const std::string> names) {
+  constexpr std::size_t most = 100;  // a message costs no more than what can be read
+  if (names.empty()) return "none";
+  const std::string more = names.size() > most ? fmt::format(" and {} more", names.size() - most) : "";
+  return fmt::format("one of: {}{}", fmt::join(names.first(std::min(most, names.size())), ", "), more);
+}
 
 std::string kind_of(const DocumentNode& node) {
   return node.type != nullptr ? fmt::format("'{}'", node.type->name)
@@ -79,6 +82,7 @@ void DocumentReader::read_node_type(DocumentNode& node, const Json& j) {
     if (file != nullptr)
       node.graph = documents_.open(file->get<std::string>(), doc_->folder, *doc_->text,
                                    child_pointer(node.pointer, "file"));
+    if (node.graph != nullptr) doc_->levels = std::max(doc_->levels, node.graph->levels + 1);
     return;
   }
   unknown_keys(j, node.pointer, {"type", "in", "params", "precision"}, "a node");
@@ -91,7 +95,7 @@ void DocumentReader::read_node_type(DocumentNode& node, const Json& j) {
            .message = fmt::format("'{}' is not a node type", name),
            .expected = "a node type",
            .got = name,
-           .suggestions = nearest_names(name, names)});
+           .suggestions = documents_.suggestions(name, [&] { return names; })});
 }
 
 void DocumentReader::read_node_params(DocumentNode& node, const Json& j) {
@@ -113,7 +117,7 @@ void DocumentReader::read_node_params(DocumentNode& node, const Json& j) {
              .message = fmt::format("{} has no parameter '{}'", kind_of(node), name),
              .expected = one_of(names),
              .got = name,
-             .suggestions = nearest_names(name, names)},
+             .suggestions = documents_.suggestions(name, [&] { return names; })},
             true);
   }
 }
@@ -132,16 +136,17 @@ void DocumentReader::read_overrides(DocumentNode& node, const Json& j) {
       continue;
     }
     const bool own = node.graph->find_param(address) != nullptr;
-    problem({.code = "unknown_address",
-             .pointer = at,
-             .message = own ? fmt::format("'{}' is a parameter of {} itself and stands in \"params\"",
-                                          address, kind_of(node))
-                            : fmt::format("there is no parameter '{}' in {}", address, kind_of(node)),
-             .expected = "NODE:PARAMETER",
-             .got = address,
-             .suggestions =
-                 own ? std::vector<std::string>{} : nearest_names(address, param_addresses(*node.graph))},
-            true);
+    problem(
+        {.code = "unknown_address",
+         .pointer = at,
+         .message = own ? fmt::format("'{}' is a parameter of {} itself and stands in \"params\"", address,
+                                      kind_of(node))
+                        : fmt::format("there is no parameter '{}' in {}", address, kind_of(node)),
+         .expected = "NODE:PARAMETER",
+         .got = address,
+         .suggestions = own ? std::vector<std::string>{}
+                            : documents_.suggestions(address, [&] { return param_addresses(*node.graph); })},
+        true);
   }
 }
 
@@ -159,14 +164,12 @@ void DocumentReader::check_dollars(const Json& value, const std::string& pointer
     const std::string name = text.substr(1);
     doc_->params_used.insert(name);
     if (doc_->find_param(name) != nullptr) return;
-    std::vector<std::string> names;
-    for (const WrittenParam& p : doc_->params) names.push_back("$" + p.name);
-    const std::vector<std::string> near = nearest_names(text, names);
+    const std::vector<std::string> near = documents_.suggestions(text, [&] { return dollar_params_; });
     for (const std::string& n : near) doc_->params_used.insert(n.substr(1));  // probably meant
     problem({.code = "unknown_parameter",
              .pointer = pointer,
              .message = fmt::format("the graph has no parameter '{}' for '{}'", name, text),
-             .expected = one_of(names),
+             .expected = one_of(dollar_params_),
              .got = text,
              .suggestions = near});
   }
@@ -210,7 +213,7 @@ void DocumentReader::read_bindings(DocumentNode& node, const Json& j) {
 std::vector<std::string> DocumentReader::unknown_input(const DocumentNode& node, const std::string& name,
                                                        const std::string& at,
                                                        const std::vector<std::string>& names) {
-  std::vector<std::string> near = nearest_names(name, names);
+  std::vector<std::string> near = documents_.suggestions(name, [&] { return names; });
   problem({.code = "unknown_input",
            .pointer = at,
            .message = fmt::format("{} has no input '{}'", kind_of(node), name),

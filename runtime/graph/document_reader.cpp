@@ -86,7 +86,9 @@ void DocumentReader::read_params(const Json& file) {
   if (params == nullptr) return;
   for (const auto& [name, value] : params->items()) {
     const std::string pointer = child_pointer("/params", name);
-    if (good_id(name, pointer, "a graph parameter")) doc_->params.push_back({name, pointer, &value});
+    if (!good_id(name, pointer, "a graph parameter")) continue;
+    doc_->params.push_back({name, pointer, &value});
+    dollar_params_.push_back("$" + name);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "runtime/graph/document.h"
 
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -76,8 +77,12 @@ class DocumentReader {
 
   Documents& documents_;
   std::shared_ptr<Document> doc_;
-  std::vector<std::string> also_used_;  // ids
+  std::vector<std::string> also_used_;      // ids
+  std::vector<std::string> dollar_params_;  // "$name" of every graph parameter
 };
+
+// "one of: a, b", for what was expected.
+std::string one_of(std::span<const std::string> names);
 
 // "a graph as a node", or the quoted name of its type.
 std::string kind_of(const DocumentNode&);

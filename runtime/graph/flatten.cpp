@@ -11,6 +11,9 @@ namespace {
 // Graphs of graphs multiply: 30 files that use the next one twice are 2^30 nodes. What people write stays far below.
 constexpr std::size_t most_nodes = 100000;
 constexpr int most_edges = 1000000;
+// Of graphs that a link passes through: it is followed by recursion. Enough to leave the innermost graph
+// and enter another.
+constexpr std::size_t most_hops = 2 * Documents::max_levels;
 
 class Flattener {
  public:
@@ -140,6 +143,7 @@ class Follower {
     if (--budget_ < 0) return;
     const std::pair step{&scope, &link};
     if (std::find(way_.begin(), way_.end(), step) != way_.end()) return ring();
+    if (way_.size() == most_hops) return too_long();
     way_.push_back(step);
     if (link.node)
       from_node(scope, link, crossings);
@@ -188,6 +192,17 @@ class Follower {
   void add(Edge edge) {
     edge.link = first_;
     out_.push_back(std::move(edge));
+  }
+
+  void too_long() {
+    add({.kind = Edge::Kind::bad});
+    report_inside(
+        problems_, *first_scope_,
+        {.code = "too_deep",
+         .pointer = first_->pointer,
+         .message = fmt::format("'{}' is passed on by more than {} graphs", first_->text, most_hops),
+         .expected = fmt::format("at most {} graphs on the way", most_hops),
+         .got = first_->text});
   }
 
   void ring() {

@@ -57,7 +57,7 @@ bool JsonReader::too_deep() {
   // Where the brackets begin says more than 256 times "/0".
   for (int i = depth_ - 1; i > 2; --i) item_ = out_.items_[item_].parent;
   const std::string limit = fmt::format("at most {} levels", SourceText::max_depth);
-  stop("too_deep", here(),
+  stop("too_deep", out_.items_[item_].value,
        fmt::format("brackets stand inside each other more than {} levels deep", SourceText::max_depth), limit,
        "more");
   return true;

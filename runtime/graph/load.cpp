@@ -1,5 +1,6 @@
 #include "runtime/graph/load.h"
 
+#include "runtime/core/read_file.h"
 #include "runtime/graph/check.h"
 #include "runtime/graph/output_format.h"
 
@@ -141,9 +142,8 @@ class Builder {
       bool first = true;
       for (const DocumentOutput& output : child.document->outputs) {
         if (output.layered || output.layers.empty()) continue;
-        int budget = 1000000;
         Diagnostics known;
-        for (const Edge& edge : follow(child, output.layers[0].from, known, budget)) {
+        for (const Edge& edge : follow(child, output.layers[0].from, known, naming_budget_)) {
           const auto from = port_of(edge);
           if (!from) continue;
           if (first) graph_.port_names.push_back({id, *from});
@@ -161,6 +161,8 @@ class Builder {
   const LoadOptions& options_;
   Diagnostics& problems_;
   std::vector<std::size_t> index_;  // of flat nodes in the graph
+  int naming_budget_ =
+      1000000;  // hops of all names together: graphs that pass on what others pass on multiply them
   Graph graph_;
 };
 
@@ -244,7 +246,7 @@ Loaded load_graph_text(const std::string& text, const std::string& path, const R
 }
 
 Loaded load_graph(const std::string& path, const Registry& registry, const LoadOptions& options) {
-  return load_graph_text(read_text_file(path), path, registry, options);
+  return load_graph_text(read_file(path), path, registry, options);
 }
 
 }  // namespace frustum

@@ -75,6 +75,13 @@ std::optional<Json> substitute(const Json& value, const Instance& scope, const G
 
 void apply_settings(Instance& top, const LoadOptions& options, Diagnostics& problems) {
   const Document& doc = *top.document;
+  if (options.frame && doc.find_param("frame") == nullptr)
+    report(problems, *doc.text,
+           {.code = "no_frame_parameter",
+            .severity = Severity::warning,
+            .pointer = "",
+            .message = "the graph has no parameter 'frame': every frame is the same",
+            .expected = "a parameter \"frame\""});
   if (options.frame && doc.find_param("frame") != nullptr)
     top.params["frame"] = {std::make_shared<const Json>(*options.frame),
                            doc.folder,

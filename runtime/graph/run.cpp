@@ -4,6 +4,7 @@
 #include "runtime/graph/run_state.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
@@ -144,7 +145,9 @@ class Runner {
     } catch (const std::bad_alloc&) {
       fail(s, End::world_failed, "out_of_memory", "no memory left");
     } catch (const std::exception& e) {
-      fail(s, End::failed, "internal", fmt::format("this is a defect of frustum: {}", e.what()));
+      spdlog::debug("{}", e.what());  // the text of a library, of no use without the source
+      fail(s, End::world_failed, "internal",
+           "this is a fault of frustum, which met an error that it does not know");
     }
   }
 

@@ -23,6 +23,20 @@ Buffer cut_to_region(const Buffer& b, const std::optional<Rect>& region) {
   return b.type().from_raster(cut);
 }
 
+Diagnostic not_finite(const Culprit& c, const SourcePlace& place) {
+  return {.code = "not_finite_result",
+          .severity = Severity::warning,
+          .pointer = place.pointer,
+          .message = fmt::format("{}.{} made the first NaN or infinity ({}){}{}", c.node, c.port, c.where,
+                                 c.inputs.empty() ? "" : "; its inputs: ", c.inputs),
+          .expected = "finite numbers",
+          .got = fmt::format("{} NaN, {} infinities, of {} values", c.health.nan,
+                             c.health.positive_infinity + c.health.negative_infinity, c.health.values),
+          .file = place.file,
+          .line = place.line,
+          .column = place.column};
+}
+
 }  // namespace
 
 RunState::RunState(const Graph& g, const RunOptions& o)
@@ -98,9 +112,14 @@ void RunState::take_results(RunResult& result) {
   for (auto& [order, d] : problems_) result.problems.add(std::move(d));
   result.problems.add(caches.take_problems());
   const auto first = std::min_element(culprits_.begin(), culprits_.end(), earlier);
-  if (first != culprits_.end()) result.culprit = std::move(first->second);
+  if (first != culprits_.end()) {
+    result.problems.add(not_finite(first->second, graph.nodes[first->first].place));
+    result.culprit = std::move(first->second);
+  }
+  // A run that ended early has made only some of them.
   for (const PortRef p : options.demand.ports)
-    result.buffers[p] = parts_.contains(p) ? parts_[p] : cut_to_region(buffer(p), options.region);
+    if (Buffer b = parts_.contains(p) ? parts_[p] : cut_to_region(buffer(p), options.region))
+      result.buffers[p] = std::move(b);
   result.peak_bytes = ledger.peak();
 }
 

@@ -1,31 +1,19 @@
 #include "runtime/io/file_bytes.h"
 
 #include "runtime/core/error.h"
+#include "runtime/core/read_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <cstring>
+#include <new>
 
 namespace frustum {
 namespace {
-
-struct Descriptor {
-  int fd;
-  ~Descriptor() {
-    if (fd >= 0) close(fd);
-  }
-};
-
-[[noreturn]] void cannot_read(const FilePath& path, std::string_view why) {
-  throw WorldError("cannot_read_file", fmt::format("cannot read {}: {}", path.written, why));
-}
 
 // Returns 0, or the error number; a file that has become shorter is EIO.
 int read_block(int fd, char* to, std::size_t size, std::size_t offset) {
@@ -42,12 +30,8 @@ int read_block(int fd, char* to, std::size_t size, std::size_t offset) {
 
 FileBytes::FileBytes(const FilePath& path) {
   if (path.empty()) throw NodeError("no_file", "no file is named");
-  const Descriptor file{open(path.resolved.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (file.fd < 0) cannot_read(path, std::strerror(errno));
-  struct stat info {};
-  if (fstat(file.fd, &info) != 0) cannot_read(path, std::strerror(errno));
-  if (!S_ISREG(info.st_mode)) cannot_read(path, "it is not a regular file");
-  size_ = static_cast<std::size_t>(info.st_size);
+  const RegularFile file(path.resolved, path.written);
+  size_ = file.size();
   try {
     data_ = std::make_unique_for_overwrite<char[]>(size_);
   } catch (const std::bad_alloc&) {
@@ -57,10 +41,11 @@ FileBytes::FileBytes(const FilePath& path) {
   std::atomic<int> error{0};
   tbb::parallel_for(std::size_t{0}, (size_ + block - 1) / block, [&](std::size_t i) {
     const std::size_t at = i * block;
-    if (const int e = read_block(file.fd, data_.get() + at, std::min(block, size_ - at), at); e != 0)
+    if (const int e = read_block(file.descriptor(), data_.get() + at, std::min(block, size_ - at), at);
+        e != 0)
       error = e;
   });
-  if (error != 0) cannot_read(path, std::strerror(error));
+  if (error != 0) file.fail(error);
 }
 
 std::string place_in(const FilePath& path, std::string_view text, std::size_t offset) {

@@ -222,6 +222,8 @@ TEST(Cli, DiffJudgesTwoFiles) {
   EXPECT_GT(d["max"], 0);
   EXPECT_EQ(frustum({"diff", folder.file("a.exr"), folder.file("b.exr"), "--metric", "max=1e6"}).code, 0);
   EXPECT_EQ(frustum({"diff", folder.file("a.exr"), folder.file("none.exr")}).code, 3);
+  EXPECT_THAT(frustum({"diff", folder.file("a.exr"), folder.file("b.exr"), "--metric", "identical"}).out,
+              HasSubstr("does not hold: identical"));
 }
 
 // A picture of minutes is interrupted after a moment.

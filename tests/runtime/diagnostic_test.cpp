@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <random>
+
 namespace frustum {
 namespace {
 
@@ -76,6 +79,56 @@ TEST(NearestNames, ASwapCountsOneEdit) {
 TEST(NearestNames, AreThreeAtMostNearestFirst) {
   EXPECT_EQ(nearest_names("color", Names{"colxyr", "colour", "colxr", "color2", "dolor"}),
             (Names{"colour", "colxr", "color2"}));
+}
+
+TEST(NearestNames, OfShortNamesAreOneEditAway) {
+  EXPECT_TRUE(nearest_names("ab", Names{"abc", "b", "cd"}).empty());
+  EXPECT_EQ(nearest_names("ab", Names{"abc", "ad"}), Names{"ad"});
+  EXPECT_TRUE(nearest_names("lit.xa", Names{"lit.xbc"}).empty()) << "what both begin with counts for neither";
+}
+
+TEST(NearestNames, BesideANearNameFarOnesAreLeftOut) {
+  EXPECT_EQ(nearest_names("light.ambeint", Names{"light.ambient", "light.point"}), (Names{"light.ambient"}));
+}
+
+// Against the whole table of Damerau's recurrence, which the band cuts.
+TEST(NearestNames, CountEditsLikeTheWholeTable) {
+  const auto edits = [](const std::string& a, const std::string& b) {
+    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i)
+      for (std::size_t j = 0; j <= b.size(); ++j) {
+        if (i == 0 || j == 0) {
+          d[i][j] = i + j;
+          continue;
+        }
+        d[i][j] =
+            std::min({d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1), d[i - 1][j] + 1, d[i][j - 1] + 1});
+        if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+          d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    return d[a.size()][b.size()];
+  };
+  std::mt19937 random(7);
+  int near = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::string a, b;
+    for (std::size_t n = 6 + random() % 8; n != 0; --n) a += static_cast<char>('a' + random() % 3);
+    b = a;
+    for (std::size_t n = random() % 6; n != 0; --n) {
+      const std::size_t at = random() % b.size();
+      switch (random() % 3) {
+        case 0: b[at] = static_cast<char>('a' + random() % 3); break;
+        case 1: b.insert(at, 1, 'b'); break;
+        default:
+          if (at > 0) std::swap(b[at], b[at - 1]);
+      }
+    }
+    const bool expected = edits(a, b) <= a.size() / 3 && 2 * edits(a, b) < std::max(a.size(), b.size());
+    EXPECT_EQ(nearest_names(a, Names{b}).size(), expected ? 1u : 0u) << a << " " << b;
+    near += expected;
+  }
+  EXPECT_GT(near, 5000);
+  EXPECT_LT(near, 19000);
 }
 
 TEST(NearestNames, AreNotFarNames) {

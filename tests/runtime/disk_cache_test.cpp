@@ -9,7 +9,6 @@
 #include "runtime/buffers/value.h"
 #include "runtime/core/error.h"
 #include "runtime/graph/keys.h"
-#include "runtime/io/named_files.h"
 #include "tests/support/pixel_nodes.h"
 #include "tests/support/temp_file.h"
 
@@ -491,32 +490,6 @@ TEST(RunCache, CheckRunsEverythingAndNamesTheNodeThatDiffers) {
   EXPECT_THAT(to_text(lie.problems), HasSubstr("late.number: the cache held other bytes"));
   EXPECT_EQ((lie.buffers.at({1, 0}).as<Number>()->value), 3);
   EXPECT_EQ((run_with(g, folder.path()).buffers.at({1, 0}).as<Number>()->value), 3) << "and was removed";
-}
-
-TEST(NamedFiles, OfASceneFileAreThoseThatItsReaderOpens) {
-  const TempFolder folder;
-  const auto names = [&](const std::string& file, const std::string& content) {
-    std::vector<std::string> found;
-    visit_named_files({file, folder.write(file, content)},
-                      [&](const FilePath& f) { found.push_back(f.written); });
-    return found;
-  };
-  folder.write("my walls.mtl",
-               "newmtl a\nKd 1 0 0\n  map_Kd -s 2 2 2 brick.png\nbump -bm 1 dents.png\n#map_Kd no\n");
-  EXPECT_THAT(names("a.obj", "v 0 0 0\nmtllib my walls.mtl\r\n# mtllib no.mtl\nf 1 1 1\nusemtl mtllib"),
-              testing::IsSupersetOf({"my walls.mtl", "brick.png", "dents.png"}));
-  EXPECT_THAT(names("b.obj", "mtllib gone.mtl\nmtllib"), testing::ElementsAre("gone.mtl"));
-  EXPECT_THAT(
-      names(
-          "c.gltf",
-          R"({"buffers": [{"uri" : "a%20b.bin"}, {"uri": "data:x;base64,AA=="}], "images": [{"uri":"t.png"}]})"),
-      testing::ElementsAre("a b.bin", "t.png"));
-  const std::string json = R"({"images":[{"uri":"u.png"}]})";
-  const std::string header =
-      std::string("glTF\2\0\0\0\0\0\0\0", 12) + std::string{static_cast<char>(json.size()), 0, 0, 0} + "JSON";
-  EXPECT_THAT(names("d.glb", header + json + "\"uri\": \"binary\""), testing::ElementsAre("u.png"));
-  EXPECT_THAT(names("e.glb", "glTF"), IsEmpty());
-  EXPECT_THAT(names("f.ply", "mtllib a.mtl\n"), IsEmpty());
 }
 
 TEST(RunCache, WhatIsQuickToMakeIsNotStored) {

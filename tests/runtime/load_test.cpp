@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <random>
 
 namespace frustum {
@@ -378,6 +379,50 @@ TEST_F(GraphsAsNodes, ThatMultiplyWithoutEndAreRefused) {
   EXPECT_EQ(errors(load_graph(folder_.file("g0.json"), test::stand_in_nodes())), Lines{"too_large /nodes/a"});
 }
 
+// Also where the files below were read before, for a shorter way to them.
+TEST_F(GraphsAsNodes, ThatStandInsideEachOtherTooDeeplyAreRefused) {
+  const auto name = [](int i) { return "d" + std::to_string(i) + ".json"; };
+  const auto use = [&](const std::string& id, int i) {
+    return "\"" + id + R"(": { "type": "graph", "file": ")" + name(i) + "\" }";
+  };
+  const int files = 3000;
+  for (int i = 1; i < files; ++i) folder_.write(name(i), graph_with(use("next", i + 1)));
+  folder_.write(name(files), graph_with(R"("c": { "type": "scene.camera" })"));
+  const Loaded chain = load_graph(folder_.file(name(1)), test::stand_in_nodes());
+  ASSERT_EQ(errors(chain), Lines{"too_deep /nodes/next/file"});
+  EXPECT_EQ(first_error(chain).file, folder_.file(name(256)));
+  EXPECT_EQ(first_error(chain).got, name(257));
+  EXPECT_EQ(errors(load_graph(folder_.file(name(files - 255)), test::stand_in_nodes())), Lines{});
+
+  std::string uses;
+  for (int i = files; i > files - 400; --i)
+    uses += (uses.empty() ? "" : ", ") + use("u" + std::to_string(i), i);
+  const Loaded known = load_graph(folder_.write("top.json", graph_with(uses)), test::stand_in_nodes());
+  ASSERT_FALSE(errors(known).empty());
+  EXPECT_EQ(first_error(known).code, "too_deep");
+}
+
+TEST_F(GraphsAsNodes, ThatPassALinkOnWithoutEndAreRefused) {
+  folder_.write(
+      "pass.json",
+      R"({ "format": "frustum.graph/1", "inputs": { "i": { "type": "mesh" } }, "nodes": {}, "outputs": { "o": { "from": "$i" } } })");
+  std::string nodes = R"("p0": { "type": "graph", "file": "pass.json", "in": { "i": "cut" } })";
+  for (int i = 1; i < 40000; ++i)
+    nodes += ",\n\"p" + std::to_string(i) + R"(": { "type": "graph", "file": "pass.json", "in": { "i": "p)" +
+             std::to_string(i - 1) + "\" } }";
+  nodes += R"(, "cut": { "type": "cull.backface", "in": { "mesh": "p39999" } })";
+  EXPECT_EQ(errors(load(graph_with(nodes))), Lines{"too_deep /nodes/cut/in/mesh"});
+}
+
+TEST_F(GraphsAsNodes, AreNoFoldersAndLibraryNamesNoPaths) {
+  const auto message = [&](const std::string& file) {
+    return first_error(load(graph_with(R"("a": { "type": "graph", "file": ")" + file + "\" }"))).message;
+  };
+  EXPECT_EQ(message(".."), "'..' is a folder, not a graph file");
+  EXPECT_EQ(message("lib:../inner"),
+            "'lib:../inner' is not the name of a library graph: it has neither slashes nor dots");
+}
+
 TEST_F(GraphsAsNodes, CanBeCheckedAlone) {
   const Loaded l = load_graph(inner_, test::stand_in_nodes());
   ASSERT_TRUE(l.graph) << to_text(l.problems);
@@ -394,6 +439,35 @@ TEST(LoadGraph, LongChainsDoNotExhaustTheStack) {
     nodes += ",\n\"n" + std::to_string(i) + "\": { \"type\": \"cull.backface\", \"in\": { \"mesh\": \"n" +
              std::to_string(i - 1) + "\" } }";
   EXPECT_EQ(errors(load(graph_with(nodes))), Lines{"cycle /nodes/n0/in/mesh"});
+}
+
+// Suggestions for each would take minutes: ten thousand times ten thousand names.
+TEST(LoadGraph, TenThousandUnknownNamesAreToldAtOnce) {
+  std::string nodes;
+  for (int i = 0; i < 10000; ++i)
+    nodes += (i == 0 ? "\"" : ",\n\"") + ("node_number_" + std::to_string(i)) +
+             R"(": { "type": "cull.backface", "in": { "mesh": "noed_numbre_)" + std::to_string(i) + "\" } }";
+  const auto start = std::chrono::steady_clock::now();
+  const Loaded l = load(graph_with(nodes));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  ASSERT_EQ(errors(l).size(), 10000u);
+  EXPECT_EQ(first_error(l).suggestions.front(), "node_number_0");
+  EXPECT_TRUE(l.problems.list().back().suggestions.empty());
+}
+
+TEST(LoadGraph, FramesOfAGraphThatHasNoneAreAWarning) {
+  const auto codes = [](const std::string& params) {
+    LoadOptions options;
+    options.frame = 3;
+    Lines out;
+    for (const Diagnostic& d :
+         load(graph_with(front, params + R"("outputs": { "o": { "from": "clip" } }, )"), options)
+             .problems.list())
+      if (d.code == "no_frame_parameter") out.push_back(d.code);
+    return out;
+  };
+  EXPECT_EQ(codes(""), Lines{"no_frame_parameter"});
+  EXPECT_EQ(codes(R"("params": { "frame": 1 }, )"), Lines{});
 }
 
 // Text that was right once, changed at random: whatever it has become is told, with a code and a place, and nothing else

@@ -258,6 +258,9 @@ TEST(Run, NamesTheFirstNodeThatMadeANaN) {
   const RunResult r = run_graph(g.graph, {.demand = {.ports = {g.port("sum")}}, .tile_edge = 32});
   ASSERT_TRUE(r.culprit.has_value());
   EXPECT_EQ(r.culprit->node, "noise");
+  ASSERT_EQ(r.problems.size(), 1u);
+  EXPECT_EQ(r.problems.list()[0].code, "not_finite_result");
+  EXPECT_EQ(r.problems.list()[0].severity, Severity::warning);
   EXPECT_EQ(r.culprit->where, "plane R, sample 0, pixel 61,47");
   EXPECT_EQ(run_graph(diamond().graph, {.demand = {.ports = {diamond().port("sum")}}}).culprit, std::nullopt);
 }

@@ -1,0 +1,267 @@
+// How the program ends when something is in its way: a run that fails or is interrupted, output that is
+// lost, files that are none.
+#include "tests/support/process.h"
+#include "tests/support/temp_file.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace frustum {
+namespace {
+
+using nlohmann::json;
+using test::frustum;
+using test::ProcessResult;
+using test::TempFolder;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+const std::string root = FRUSTUM_SOURCE_DIR;
+const std::string teapot = root + "/graphs/gallery/teapot.json";
+const std::string stages = root + "/graphs/gallery/teapot_stages.json";
+
+std::string graph_with(const std::string& nodes, const std::string& outputs, const std::string& more = "") {
+  return R"({ "format": "frustum.graph/1", )" + more + R"("nodes": { )" + nodes + R"( }, "outputs": { )" +
+         outputs + " } }";
+}
+
+// A light without a direction is known only when its node runs.
+const std::string failing =
+    graph_with(R"("a": { "type": "light.directional", "params": { "direction": [0, 0, 0] } })",
+               R"("o": { "from": "a" })");
+
+ProcessResult shell(const std::string& line) { return test::run_process({"/bin/sh", "-c", line}); }
+
+std::string quoted(const std::string& path) { return "'" + path + "'"; }
+
+std::vector<std::string> codes(const json& out) {
+  std::vector<std::string> all;
+  for (const json& d : out.at("diagnostics")) all.push_back(d["code"]);
+  return all;
+}
+
+// ----- runs that do not reach their end
+
+TEST(CliEnds, AFailedRunThatWantsAPortSaysWhy) {
+  const TempFolder folder;
+  const auto graph = folder.write("g.json", failing);
+  for (const auto& want : std::vector<std::vector<std::string>>{{}, {"--want", "a"}, {"--want", "o"}}) {
+    std::vector<std::string> text{"run", graph};
+    text.insert(text.end(), want.begin(), want.end());
+    const auto said = frustum(text);
+    EXPECT_EQ(said.code, 2) << said.err;
+    EXPECT_THAT(said.err, AllOf(HasSubstr("error[zero_direction]"), HasSubstr("/nodes/a")));
+    EXPECT_THAT(said.out, IsEmpty());
+    text.emplace_back("--json");
+    const auto object = frustum(text);
+    EXPECT_EQ(object.code, 2);
+    const auto out = json::parse(object.out);
+    EXPECT_EQ(codes(out), std::vector<std::string>{"zero_direction"});
+    EXPECT_EQ(out["end"], "failed");
+    EXPECT_THAT(out["ports"], IsEmpty());
+  }
+}
+
+TEST(CliEnds, ARunRefusedForItsMemorySaysSo) {
+  const std::vector<std::string> run{"run", stages, "--want", "display", "--want", "mesh", "--memory", "1K"};
+  const auto text = frustum(run);
+  EXPECT_EQ(text.code, 2) << text.err;
+  EXPECT_THAT(text.err, HasSubstr("error[memory]"));
+  auto with_json = run;
+  with_json.emplace_back("--json");
+  const auto object = frustum(with_json);
+  EXPECT_EQ(object.code, 2);
+  EXPECT_EQ(codes(json::parse(object.out)), std::vector<std::string>{"memory"});
+}
+
+struct Interrupted {
+  int code;
+  std::string out, err;
+};
+
+// Starts a program that takes minutes, waits until it is at work, and sends it a signal.
+Interrupted interrupted(std::vector<std::string> arguments, int signal, const TempFolder& folder) {
+  std::string line = "exec " + quoted(test::frustum_program());
+  arguments.insert(arguments.end(), {"--set", "resolution=[2048, 2048]", "--set", "samples=256"});
+  for (const std::string& a : arguments) line += " " + quoted(a);
+  line += " >" + quoted(folder.file("said")) + " 2>" + quoted(folder.file("warned"));
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
+    ::_exit(127);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  ::kill(child, signal);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  const auto text = [&](const char* name) { return shell("cat " + quoted(folder.file(name))).out; };
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), text("said"), text("warned")};
+}
+
+TEST(CliEnds, AnInterruptedRunThatWantsAPortExits130) {
+  const TempFolder folder;
+  const auto text = interrupted({"run", stages, "--want", "display", "--want", "camera"}, SIGINT, folder);
+  EXPECT_EQ(text.code, 130) << text.err;
+  EXPECT_THAT(text.err, HasSubstr("cancelled"));
+  const auto object = interrupted({"run", stages, "--want", "display", "--json"}, SIGTERM, folder);
+  EXPECT_EQ(object.code, 130) << object.err;
+  EXPECT_EQ(json::parse(object.out)["end"], "cancelled");
+}
+
+TEST(CliEnds, InspectThatIsInterruptedSaysSo) {
+  const TempFolder folder;
+  const auto r = interrupted({"inspect", stages, "display"}, SIGINT, folder);
+  EXPECT_EQ(r.code, 130) << r.err;
+  EXPECT_THAT(r.err, HasSubstr("cancelled"));
+}
+
+TEST(CliEnds, ATerminalThatGoesAwayLeavesNoTemporaryFile) {
+  const TempFolder folder;
+  const auto r = interrupted({"run", teapot, "--out", folder.file("out")}, SIGHUP, folder);
+  EXPECT_EQ(r.code, 130) << r.err;
+  if (std::filesystem::exists(folder.file("out"))) {
+    EXPECT_TRUE(std::filesystem::is_empty(folder.file("out")));
+  }
+}
+
+// ----- output that nobody gets
+
+TEST(CliEnds, OutputThatIsLostIsExit3) {
+  const std::string program = quoted(test::frustum_program());
+  for (const std::string command : {" nodes --json", " check " + quoted(stages), " --help", " --version"}) {
+    const auto full = shell(program + command + " >/dev/full");
+    EXPECT_EQ(full.code, 3) << command;
+    EXPECT_THAT(full.err, HasSubstr("cannot write to the standard output: No space left on device"))
+        << command;
+    EXPECT_EQ(shell(program + command + " >&-").code, 3) << command;
+  }
+}
+
+TEST(CliEnds, AReaderThatWentAwayIsNoFailure) {
+  const auto r =
+      shell("(" + quoted(test::frustum_program()) + " nodes --json; echo $? >&2) | head -c 1 >/dev/null");
+  EXPECT_EQ(r.err, "0\n");
+}
+
+// The numbers of closed streams go to the next files: what is said must not end in one of these.
+TEST(CliEnds, ClosedStreamsDoNotBecomeFiles) {
+  const TempFolder folder;
+  const auto r = shell(quoted(test::frustum_program()) + " run " + quoted(teapot) +
+                       " --set 'resolution=[64, 36]' --out " + quoted(folder.path()) + " <&- >&- 2>&-");
+  EXPECT_EQ(r.code, 3);
+  EXPECT_EQ(shell("head -c 4 " + quoted(folder.file("teapot.png"))).out, "\x89PNG");
+}
+
+// ----- files that are none
+
+TEST(CliEnds, PipesAndDevicesAreRefusedAtOnce) {
+  const TempFolder folder;
+  ASSERT_EQ(::mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  const auto graph =
+      folder.write("g.json", graph_with(R"("i": { "type": "io.load_image", "params": { "file": "pipe" } })",
+                                        R"("o": { "from": "i" })"));
+  const auto mesh =
+      folder.write("m.json", graph_with(R"("i": { "type": "io.load_mesh", "params": { "file": "pipe" } })",
+                                        R"("o": { "from": "i" })"));
+  for (const auto& command :
+       std::vector<std::vector<std::string>>{{"check", folder.file("pipe")},
+                                             {"check", "/dev/zero"},
+                                             {"run", graph},
+                                             {"run", mesh},
+                                             {"diff", folder.file("pipe"), folder.file("pipe")}}) {
+    const auto r = frustum(command);
+    EXPECT_EQ(r.code, 3) << testing::PrintToString(command) << r.err;
+    EXPECT_THAT(r.err, AllOf(HasSubstr("cannot_read_file"), HasSubstr("not a regular file"))) << r.err;
+  }
+  EXPECT_THAT(frustum({"check", folder.path()}).err, HasSubstr("Is a directory"));
+  EXPECT_THAT(frustum({"check", folder.file("none")}).err, HasSubstr("No such file or directory"));
+}
+
+TEST(CliEnds, AFileDoesNotTakeThePlaceOfADevice) {
+  const TempFolder folder;
+  ASSERT_EQ(::mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  for (const char* option : {"--trace", "--save"}) {
+    std::vector<std::string> command{"run", stages, "--want", "camera"};
+    if (option == std::string("--save")) command = {"inspect", stages, "camera"};
+    const auto made = folder.file(option == std::string("--save") ? "pipe.csv" : "pipe");
+    if (option == std::string("--save")) std::filesystem::rename(folder.file("pipe"), made);
+    command.insert(command.end(), {option, made});
+    const auto r = frustum(command);
+    EXPECT_NE(r.code, 0) << option;
+    EXPECT_TRUE(std::filesystem::is_fifo(made)) << option;
+  }
+}
+
+TEST(CliEnds, CheckGoesOnAfterAFileThatCannotBeRead) {
+  const TempFolder folder;
+  const auto r = frustum({"check", folder.file("none"), folder.write("g.json", failing)});
+  EXPECT_EQ(r.code, 3);
+  EXPECT_THAT(r.err, HasSubstr("none"));
+  EXPECT_THAT(r.out, HasSubstr("g.json: 1 nodes, 1 outputs, no errors"));
+}
+
+// ----- frames
+
+TEST(CliEnds, FramesThatWouldWriteOverEachOtherAreRefused) {
+  const TempFolder folder;
+  const auto frames = [&](const std::string& file, const std::string& params, const std::string& range) {
+    const auto graph = folder.write(
+        "f.json", graph_with(R"("c": { "type": "scene.camera", "params": { "resolution": [4, 4] } },
+                               "m": { "type": "io.load_image", "params": { "file": "none.exr" } })",
+                             R"("o": { "from": "m", "file": ")" + file + "\" }", params));
+    return frustum({"run", graph, "--frames", range, "--out", folder.file("out")});
+  };
+  const auto same = frames("a.exr", R"("params": { "frame": 1 }, )", "1-3");
+  EXPECT_EQ(same.code, 2);
+  EXPECT_THAT(same.err, AllOf(HasSubstr("error[file_without_frame]"), HasSubstr("/outputs/o/file")));
+  EXPECT_THAT(same.err, Not(HasSubstr("none.exr"))) << "nothing ran";
+  EXPECT_THAT(frames("a.exr", R"("params": { "frame": 1 }, )", "3").err,
+              Not(HasSubstr("file_without_frame")));
+  EXPECT_THAT(frames("a{frame}.exr", "", "1-3").err,
+              AllOf(HasSubstr("warning[no_frame_parameter]"), Not(HasSubstr("file_without_frame"))));
+  EXPECT_EQ(frames("a{frame}.exr", "", "1-2147483647").code, 2);
+}
+
+// ----- what is said
+
+TEST(CliEnds, IdsAreIntegersAndNoFaceIsNone) {
+  const std::vector<std::string> inspect{
+      "inspect", stages, "hits", "--pixel", "0,0", "--set", "resolution=[64, 36]", "--set", "samples=2"};
+  const auto text = frustum(inspect);
+  ASSERT_EQ(text.code, 0) << text.err;
+  EXPECT_THAT(text.out, AllOf(HasSubstr("none"), Not(HasSubstr("e+09"))));
+  auto as_json = inspect;
+  as_json.emplace_back("--json");
+  const auto out = json::parse(frustum(as_json).out);
+  EXPECT_TRUE(out["pixel"]["samples"][0]["id"].is_null());
+  EXPECT_TRUE(out.contains("diagnostics"));
+  as_json[4] = "32,20";
+  EXPECT_TRUE(json::parse(frustum(as_json).out)["pixel"]["samples"][0]["id"].is_number_integer());
+}
+
+TEST(CliEnds, FamiliesVersionsAndHelpAreFound) {
+  const auto family = frustum({"nodes", "clip"});
+  EXPECT_EQ(family.code, 0);
+  EXPECT_THAT(family.out, AllOf(HasSubstr("clip.homogeneous"), Not(HasSubstr("light."))));
+  EXPECT_EQ(frustum({"nodes", "clap"}).code, 2);
+  EXPECT_TRUE(json::parse(frustum({"--json", "--version"}).out).contains("version"));
+  EXPECT_THAT(frustum({"run", teapot, "--region", "1,2,3"}).err, HasSubstr("frustum run --help"));
+  for (const std::vector<std::string>& bad :
+       std::vector<std::vector<std::string>>{{"run", teapot, "--region", "0,0,5,5,"},
+                                             {"inspect", stages, "mesh", "--table", "--first=-1"},
+                                             {"inspect", stages, "mesh", "--table", "--rows=0"}})
+    EXPECT_EQ(frustum(bad).code, 2) << testing::PrintToString(bad);
+}
+
+}  // namespace
+}  // namespace frustum
