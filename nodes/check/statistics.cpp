@@ -12,7 +12,7 @@ namespace frustum {
 namespace {
 
 struct Inputs {
-  Ref<Image> image;
+  std::variant<Ref<Image>, Ref<Depth>, Ref<Visibility>> image;
 };
 struct Params {};
 struct Outputs {
@@ -65,7 +65,7 @@ Outputs run(const Inputs& in, const Params&, Context& ctx) {
   table->columns.push_back({.name = "plane"});
   for (const std::string& name : names) table->columns.push_back({.name = name});
 
-  const Raster& r = in.image->raster;
+  const Raster& r = std::visit([](const auto& image) -> const Raster& { return image->raster; }, in.image);
   for (int p = 0; p < static_cast<int>(r.frame().planes.size()); ++p) {
     ctx.poll();
     const auto [n, deviation] = measure_plane(r, p);
@@ -84,10 +84,11 @@ Outputs run(const Inputs& in, const Params&, Context& ctx) {
 NodeType nodes::check_statistics() {
   return node("check.statistics", run)
       .doc(
-          "Measures every plane of an image: least, largest, mean, deviation, percentiles, and what is not "
+          "Measures every plane of pixels: least, largest, mean, deviation, percentiles, and what is not "
           "finite.")
       .cite("Chan, Golub & LeVeque 1983, Algorithms for computing the sample variance, doi:10.2307/2683386")
-      .input("image", &Inputs::image, "Any planes; all their samples count alike.")
+      .input("image", &Inputs::image,
+             "Colours, attributes, depths or what is seen; all samples of a plane count alike.")
       .output("table", &Outputs::table,
               "A row for each plane; numbers are of its finite values, 0 where there is none.");
 }

@@ -1,5 +1,9 @@
 #include "runtime/app/scaffold.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
 #include <regex>
 #include <utility>
 
@@ -311,11 +315,47 @@ std::string pascal_name(std::string_view name) {
   return out;
 }
 
+namespace {
+
+bool is_keyword(std::string_view word) {
+  static constexpr std::string_view keywords[] = {
+      "alignas",     "alignof",   "and",       "asm",           "auto",         "bool",
+      "break",       "case",      "catch",     "char",          "class",        "concept",
+      "const",       "continue",  "decltype",  "default",       "delete",       "do",
+      "double",      "else",      "enum",      "explicit",      "export",       "extern",
+      "false",       "float",     "for",       "friend",        "goto",         "if",
+      "inline",      "int",       "long",      "mutable",       "namespace",    "new",
+      "noexcept",    "not",       "nullptr",   "operator",      "or",           "private",
+      "protected",   "public",    "register",  "requires",      "return",       "short",
+      "signed",      "sizeof",    "static",    "struct",        "switch",       "template",
+      "this",        "throw",     "true",      "try",           "typedef",      "typeid",
+      "typename",    "union",     "unsigned",  "using",         "virtual",      "void",
+      "volatile",    "while",     "xor",       "bitand",        "bitor",        "compl",
+      "constexpr",   "consteval", "constinit", "static_assert", "thread_local", "wchar_t",
+      "static_cast", "const_cast"};
+  return std::find(std::begin(keywords), std::end(keywords), word) != std::end(keywords);
+}
+
+// Names that a node's source sees, which a namespace of the same name would hide.
+bool is_seen(std::string_view word) {
+  static constexpr std::string_view seen[] = {"std",  "glm",        "tbb",   "hwy",     "fmt",    "frustum",
+                                              "node", "pixel_node", "nodes", "kernels", "detail", "test"};
+  return std::find(std::begin(seen), std::end(seen), word) != std::end(seen);
+}
+
+}  // namespace
+
 std::string problem_of_node_name(std::string_view name) {
-  static const std::regex pattern("[a-z][a-z0-9_]*[.][a-z][a-z0-9_]*");
-  if (!std::regex_match(name.begin(), name.end(), pattern))
+  static const std::regex pattern("[a-z][a-z0-9]*(_[a-z0-9]+)*[.][a-z][a-z0-9]*(_[a-z0-9]+)*");
+  if (name.size() > 100 || !std::regex_match(name.begin(), name.end(), pattern))
     return "a node type is named FAMILY.NODE in snake_case, such as clip.homogeneous";
-  if (name.starts_with("kernels.")) return "nodes/kernels holds shared arithmetic and no node types";
+  const auto dot = name.find('.');
+  const std::string_view family = name.substr(0, dot), node = name.substr(dot + 1);
+  if (family.find('_') != std::string_view::npos)
+    return "a family is one word: clip_a.b and clip.a_b would be one C++ function";
+  for (const std::string_view word : {family, node})
+    if (is_keyword(word)) return fmt::format("'{}' is a word of C++", word);
+  if (is_seen(family)) return fmt::format("a family '{}' would hide what nodes use by that name", family);
   return "";
 }
 

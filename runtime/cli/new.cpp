@@ -15,7 +15,10 @@ struct Arguments {
 };
 
 std::filesystem::path tree(const Arguments& args) {
-  if (!args.root.empty()) return args.root;
+  if (!args.root.empty()) {
+    if (std::filesystem::is_directory(args.root)) return args.root;
+    throw UsageError(fmt::format("new: --root {}: there is no such folder", args.root));
+  }
   if (const auto here = source_root(".")) return *here;
   throw UsageError("new: no source tree around the current folder; name it with --root");
 }

@@ -3,6 +3,7 @@
 #include "runtime/io/primaries.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace frustum {
 namespace {
@@ -148,6 +149,12 @@ Matrix3 xyz_from_linear(const ColorSpace& space) {
   return product(adaptation(xyz_of(p->xy[6], p->xy[7])), native);
 }
 
+bool rows_sum_to_one(const Matrix3& m) {
+  for (std::size_t i = 0; i < 9; i += 3)
+    if (std::fabs(m[i] + m[i + 1] + m[i + 2] - 1) > 1e-12) return false;
+  return true;
+}
+
 kernels::ColorMap color_map(const ColorSpace& from, const ColorSpace& to) {
   kernels::ColorMap map{.from = from.curve, .to = to.curve};
   if (from.primaries == to.primaries) {
@@ -156,6 +163,8 @@ kernels::ColorMap color_map(const ColorSpace& from, const ColorSpace& to) {
   }
   map.same_primaries = false;
   map.matrix = product(inverse(xyz_from_linear(to)), xyz_from_linear(from));
+  // Between spaces whose whites are one after adaptation the rows sum to 1, up to the rounding of the products.
+  map.keeps_grey = !from.primaries.empty() && !to.primaries.empty() && rows_sum_to_one(map.matrix);
   return map;
 }
 

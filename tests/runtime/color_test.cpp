@@ -51,6 +51,20 @@ TEST(Color, WhiteIsWhiteInEverySpace) {
     }
 }
 
+TEST(Color, GreysStayNeutralAndWhiteKeepsItsBits) {
+  for (const ColorSpace& a : embedded_spaces())
+    for (const ColorSpace& b : embedded_spaces()) {
+      if (a.primaries.empty() || b.primaries.empty()) continue;
+      for (const float grey : {1.0f, 0.5f, 0.18f, 0.001f, 7.25f}) {
+        float r = grey, g = grey, blue = grey;
+        ColorConfig::embedded().conversion(a.name, b.name).apply(&r, &g, &blue, 1);
+        EXPECT_EQ(r, g) << a.name << " to " << b.name;
+        EXPECT_EQ(r, blue) << a.name << " to " << b.name;
+        if (grey == 1) EXPECT_EQ(r, 1) << a.name << " to " << b.name;
+      }
+    }
+}
+
 // Every pair, ours against OpenColorIO. Where a curve takes part, its sRGB is smooth (relatively 2.5e-4 off
 // in the toe) and its powers are fast ones (1e-5); matrices alone agree to the rounding of floats.
 TEST(Color, AgreesWithOpenColorIO) {

@@ -21,7 +21,8 @@ TEST(NewNode, NamesAreFamilyDotNodeInSnakeCase) {
   for (const char* good : {"curve.supercircle", "io.load_mesh2"})
     EXPECT_EQ(problem_of_node_name(good), "") << good;
   for (const char* bad : {"", "curve", "Curve.arc", "curve.Arc", "curve.arc.x", "curve.", ".arc",
-                          "curve.1arc", "cur-ve.arc", "../x.y", "kernels.sum"})
+                          "curve.1arc", "cur-ve.arc", "../x.y", "kernels.sum", "class.a", "a.class",
+                          "new.delete", "std.vector", "node.node", "curve_a.b", "curve.a__b", "curve.a_"})
     EXPECT_NE(problem_of_node_name(bad), "") << bad;
 }
 

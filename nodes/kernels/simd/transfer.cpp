@@ -28,7 +28,8 @@ HWY_INLINE V encode(const CurveIn<float>& k, V v) {
   const D d;
   const V a = hn::Abs(v);
   const V power = frustum::HWY_NAMESPACE::pow(d, a, hn::Set(d, k.power));
-  const V curved = hn::Sub(hn::Mul(power, hn::Set(d, k.scale)), hn::Set(d, k.offset));
+  const V rest = hn::Sub(hn::Mul(hn::Min(power, hn::Set(d, 1.0f)), hn::Set(d, k.rest)), hn::Set(d, k.offset));
+  const V curved = hn::Add(hn::Mul(power, hn::Set(d, k.scale)), rest);
   return hn::CopySign(hn::IfThenElse(hn::Le(a, hn::Set(d, k.knee)), hn::Mul(a, hn::Set(d, k.slope)), curved),
                       v);
 }
@@ -36,7 +37,7 @@ HWY_INLINE V encode(const CurveIn<float>& k, V v) {
 HWY_INLINE V decode(const CurveIn<float>& k, V v) {
   const D d;
   const V a = hn::Abs(v);
-  const V base = hn::Mul(hn::Add(a, hn::Set(d, k.offset)), hn::Set(d, k.scale));
+  const V base = hn::Div(hn::Add(a, hn::Set(d, k.offset)), hn::Set(d, k.scale));
   const V curved = frustum::HWY_NAMESPACE::pow(d, base, hn::Set(d, k.power));
   return hn::CopySign(hn::IfThenElse(hn::Le(a, hn::Set(d, k.knee)), hn::Mul(a, hn::Set(d, k.slope)), curved),
                       v);
@@ -46,6 +47,11 @@ HWY_INLINE V row(const float* m, V x, V y, V z) {
   const D d;
   const V xy = hn::Add(hn::Mul(hn::Set(d, m[0]), x), hn::Mul(hn::Set(d, m[1]), y));
   return hn::Add(xy, hn::Mul(hn::Set(d, m[2]), z));
+}
+
+HWY_INLINE V mixed(V x, V y, V z, float my, float mz) {
+  const D d;
+  return hn::Add(x, hn::Add(hn::Mul(hn::Set(d, my), hn::Sub(y, x)), hn::Mul(hn::Set(d, mz), hn::Sub(z, x))));
 }
 
 void convert(const ColorMap& map, float* r, float* g, float* b, std::size_t n) {
@@ -58,7 +64,10 @@ void convert(const ColorMap& map, float* r, float* g, float* b, std::size_t n) {
   for (; i + lanes <= n; i += lanes) {
     V x = hn::LoadU(d, r + i), y = hn::LoadU(d, g + i), z = hn::LoadU(d, b + i);
     if (map.from != Curve::linear) x = decode(in, x), y = decode(in, y), z = decode(in, z);
-    if (!map.same_primaries) {
+    if (map.keeps_grey) {
+      const V u = mixed(x, y, z, m[1], m[2]), v = mixed(y, x, z, m[3], m[5]), w = mixed(z, x, y, m[6], m[7]);
+      x = u, y = v, z = w;
+    } else if (!map.same_primaries) {
       const V u = row(m, x, y, z), v = row(m + 3, x, y, z), w = row(m + 6, x, y, z);
       x = u, y = v, z = w;
     }

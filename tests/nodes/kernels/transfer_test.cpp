@@ -61,6 +61,16 @@ TEST(Transfer, MeetsTheStandardsAtTheirPoints) {
   EXPECT_NEAR(encode(Curve::adobe_rgb, 0.25), 0.532401354084, 1e-12);  // 0.25^(256/563)
 }
 
+TEST(Transfer, BlackAndWhiteAreFixedPoints) {
+  for (const Curve c : curves)
+    for (const double v : {0.0, 1.0, -1.0}) {
+      EXPECT_EQ(encode(c, v), v) << static_cast<int>(c);
+      EXPECT_EQ(decode(c, v), v) << static_cast<int>(c);
+      EXPECT_EQ(encode(c, static_cast<float>(v)), static_cast<float>(v)) << static_cast<int>(c);
+      EXPECT_EQ(decode(c, static_cast<float>(v)), static_cast<float>(v)) << static_cast<int>(c);
+    }
+}
+
 TEST(Transfer, CurvesAreOddAndPassWhatIsNotFinite) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   for (const Curve c : curves) {
@@ -87,10 +97,11 @@ TEST_P(TransferOnTarget, HasTheScalarBits) {
   test::Random random(7);
   for (const Curve from : curves)
     for (const Curve to : curves)
-      for (const bool same : {false, true}) {
+      for (const int kind : {0, 1, 2}) {
         ColorMap map{.from = from,
                      .to = to,
-                     .same_primaries = same,
+                     .same_primaries = kind == 1,
+                     .keeps_grey = kind == 2,
                      .matrix = {0.6, 0.3, 0.1, -0.05, 1.1, -0.05, 0.02, 0.08, 0.9}};
         for (const std::size_t n : {1u, 7u, 64u, 301u}) {
           std::vector<float> a[3], b[3];
