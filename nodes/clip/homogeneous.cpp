@@ -116,9 +116,23 @@ Mesh with_pieces(const Mesh& mesh, std::span<const std::uint32_t> kept, const cl
   return out;
 }
 
+clip::Cutting cutting_of(const Inputs& in, const Params& p) {
+  return {in.mesh->camera && in.mesh->camera->reversed_z, p.planes == Planes::near_only, p.guard_band};
+}
+
+Verdict clipping(const Inputs& in, const Params& p, const Context& ctx) {
+  return ctx.real([&]<class R>() {
+    const auto column = in.mesh->real<R>("position");
+    const auto position = column->template values<glm::vec<4, R>>();
+    const std::size_t vertex = clip::first_outside<R>(cutting_of(in, p), position);
+    if (vertex == position.size()) return off_exact("every vertex lies inside all six planes");
+    return on(fmt::format("vertex {} lies outside the view volume", vertex));
+  });
+}
+
 Outputs run(const Inputs& in, const Params& p, Context& ctx) {
-  const clip::Cutting cutting{in.mesh->camera && in.mesh->camera->reversed_z, p.planes == Planes::near_only,
-                              p.guard_band};
+  if (!ctx.simulates("clipping")) return {in.mesh};
+  const clip::Cutting cutting = cutting_of(in, p);
   Ref<Mesh> result = in.mesh;
   ctx.real([&]<class R>() {
     using Point = glm::vec<4, R>;
@@ -165,6 +179,7 @@ NodeType nodes::clip_homogeneous() {
       .param("guard_band", &Params::guard_band,
              "Half-width of the x and y band that cuts; raising it cuts fewer faces.",
              {.unit = "w", .range = at_least(1)})
+      .effect("clipping", clipping, "Faces are tested against the planes of the view volume, and cut.")
       .output("mesh", &Outputs::mesh, "The parts inside, cut faces last; winding and attributes are kept.",
               {.space = Space::clip});
 }

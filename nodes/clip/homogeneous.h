@@ -61,6 +61,14 @@ inline Verdict verdict(unsigned a, unsigned b, unsigned c) {
 
 }  // namespace detail
 
+// The first vertex outside a side of the volume, or not finite; position.size() where all are inside. Faces of
+// such vertices alone are kept whole whatever the planes.
+template <std::floating_point R>
+std::size_t first_outside(const Cutting& cutting, std::span<const glm::vec<4, R>> position) {
+  return kernels::first_where(position.size(),
+                              [&](std::size_t i) { return detail::vertex_code(cutting, position[i]) != 0; });
+}
+
 // One pass over the vertices; one over the faces unless no vertex is outside.
 template <std::floating_point R>
 Verdicts judge(const Cutting& cutting, std::span<const glm::vec<4, R>> position,

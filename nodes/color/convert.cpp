@@ -5,6 +5,8 @@
 #include "runtime/core/node_type.h"
 #include "runtime/io/color.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -28,23 +30,39 @@ struct State {
   ColorConversion conversion;
   std::array<int, 3> color = {};  // planes R, G, B; unused where nothing is converted
   std::optional<int> alpha = {};  // set where colours are divided by it
+  bool simulated = true;
   bool converts(int plane) const {
-    return !conversion.identity() && std::find(color.begin(), color.end(), plane) != color.end();
+    return simulated && std::find(color.begin(), color.end(), plane) != color.end();
   }
 };
 
 PlaneKind kind_of(const Frame& f, int plane) { return f.planes[static_cast<std::size_t>(plane)].kind; }
 
-Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context&) {
+std::string space_of(const Inputs& in, const Params& p) {
+  if (!p.from.empty()) return p.from;
+  const std::string& own = in.image.frame().color_space;
+  return own.empty() ? std::string(linear_rec709) : own;
+}
+
+Verdict conversion(const Inputs& in, const Params& p, const Context&) {
+  const Ref<ColorConfig> config = ColorConfig::open(p.config);
+  const std::string from = space_of(in, p);
+  if (config->conversion(from, p.to, p.engine).identity())
+    return off_exact(fmt::format("{} and {} are one colour space", from, p.to));
+  return on(fmt::format("the image is {}, {} is asked for", from, p.to));
+}
+
+// An identity that is forced changes no bit: it is applied without dividing by alpha and back. Images without
+// the planes of a colour have nothing to force it on.
+Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
   const Ref<ColorConfig> config = ColorConfig::open(p.config);
   Frame frame = in.image.frame();
-  std::string from = p.from;
-  if (from.empty()) from = frame.color_space;
-  if (from.empty()) from = linear_rec709;
-  State state{.conversion = config->conversion(from, p.to, p.engine)};
-  if (!state.conversion.identity()) {
+  State state{.conversion = config->conversion(space_of(in, p), p.to, p.engine)};
+  const bool has_color = frame.find("R") && frame.find("G") && frame.find("B");
+  state.simulated = ctx.simulates("color_conversion") && (!state.conversion.identity() || has_color);
+  if (state.simulated) {
     state.color = {in.image.read("R"), in.image.read("G"), in.image.read("B")};
-    if (frame.alpha == Alpha::premultiplied && !state.conversion.linear())
+    if (frame.alpha == Alpha::premultiplied && !state.conversion.linear() && !state.conversion.identity())
       state.alpha = in.image.try_read("A");
     const PlaneKind kind = kind_of(frame, state.color[0]);
     for (const int plane :
@@ -144,6 +162,7 @@ NodeType nodes::color_convert() {
                  "Who converts between embedded spaces: frustum's exact curves, or OpenColorIO.")
           .knob({"ocio", "exact"},
                 "OpenColorIO's optimised curves are off by up to 7.6e-7, in the toe relatively 2.5e-4.")
+          .effect("color_conversion", conversion, "Every colour is converted.")
           .output("image", &Outputs::image,
                   "The same window, samples and planes, in the colour space asked for.");
   depend_on_color_environment(type);

@@ -15,7 +15,13 @@ struct Outputs {
   Ref<Mesh> mesh;
 };
 
+// Always licensed: clipping would drop the same faces, one by one.
+Verdict outside(const Inputs&, const Params&, const Context&) {
+  return off_exact("a face that lies outside one side of the view volume covers no sample");
+}
+
 Outputs run(const Inputs& in, const Params&, Context& ctx) {
+  if (ctx.simulates("outside_faces")) return {in.mesh};
   const bool reversed_z = in.mesh->camera && in.mesh->camera->reversed_z;
   std::vector<std::uint32_t> faces;
   ctx.real([&]<class R>() {
@@ -36,6 +42,7 @@ NodeType nodes::cull_frustum() {
       .cite("Assarsson & Moller 2000, Journal of Graphics Tools 5(1), for triangles")
       .covers(37)
       .input("mesh", &Inputs::mesh, "A mesh in clip space.", {.space = Space::clip})
+      .shortcut("outside_faces", outside, "Faces that lie wholly outside are carried on to clipping.")
       .output("mesh", &Outputs::mesh, "The faces that may show; never one fewer than those that do.",
               {.space = Space::clip});
 }

@@ -187,4 +187,11 @@ glm::vec<3, R> divided(const glm::vec<4, R>& p) {
   return {p.x / p.w, p.y / p.w, p.z / p.w};
 }
 
+// The first point whose divide by w changes a bit; p_clip.size() where w is 1 everywhere, as after a parallel
+// projection.
+template <std::floating_point R>
+std::size_t first_to_divide(std::span<const glm::vec<4, R>> p_clip) {
+  return first_where(p_clip.size(), [&](std::size_t i) { return p_clip[i].w != R(1); });
+}
+
 }  // namespace frustum::kernels

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -61,6 +62,22 @@ std::vector<std::uint32_t> indices_where(std::size_t n, const Keep& keep) {
   return indices_marked(n, [&keep](std::size_t begin, std::size_t end, std::uint8_t* flags) {
     for (std::size_t i = begin; i < end; ++i) flags[i - begin] = keep(i) ? 1 : 0;
   });
+}
+
+// The least i < n for which holds(i), or n where there is none. Blocks beyond one that was found are not begun.
+// `holds` may be called from any thread.
+template <class Holds>
+std::size_t first_where(std::size_t n, const Holds& holds) {
+  std::atomic<std::size_t> first{n};
+  parallel_blocks(n, usual_block, [&](std::size_t begin, std::size_t end) {
+    if (begin > first.load(std::memory_order_relaxed)) return;
+    std::size_t i = begin;
+    while (i < end && !holds(i)) ++i;
+    if (i == end) return;
+    for (std::size_t seen = first; i < seen && !first.compare_exchange_weak(seen, i);) {
+    }
+  });
+  return first;
 }
 
 }  // namespace frustum::kernels

@@ -4,6 +4,8 @@
 #include "runtime/buffers/mesh_positions.h"
 #include "runtime/core/node_type.h"
 
+#include <fmt/format.h>
+
 namespace frustum {
 namespace {
 
@@ -15,6 +17,16 @@ struct Outputs {
   Ref<Mesh> mesh;
 };
 
+Verdict divide(const Inputs& in, const Params&, const Context& ctx) {
+  return ctx.real([&]<class R>() {
+    const auto column = in.mesh->real<R>("position");
+    const auto clip = column->template values<glm::vec<4, R>>();
+    const std::size_t vertex = kernels::first_to_divide<R>(clip);
+    if (vertex == clip.size()) return off_exact("w is 1 at every vertex: the projection is parallel");
+    return on(fmt::format("w is {:.6g} at vertex {}", clip[vertex].w, vertex));
+  });
+}
+
 Outputs run(const Inputs& in, const Params&, Context& ctx) {
   auto out = std::make_shared<Mesh>();
   ctx.real([&]<class R>() {
@@ -24,7 +36,7 @@ Outputs run(const Inputs& in, const Params&, Context& ctx) {
     std::size_t without = 0;
     *out =
         with_positions<Clip, Ndc>(*in.mesh, Space::ndc, [&](std::span<const Clip> clip, std::span<Ndc> ndc) {
-          without = project::clip_to_ndc<R>(clip, ndc, no_point);
+          without = project::clip_to_ndc<R>(ctx.simulates("perspective_divide"), clip, ndc, no_point);
         });
     if (without > 0) *out = without_unplaced(*out, no_point, ctx);
   });
@@ -42,6 +54,7 @@ NodeType nodes::project_divide() {
       .cite("Errata E12: only after clipping in homogeneous space")
       .covers(20)
       .input("mesh", &Inputs::mesh, "A clipped mesh in clip space.", {.space = Space::clip})
+      .effect("perspective_divide", divide, "Positions are divided by w.")
       .output("mesh", &Outputs::mesh,
               "Position in NDC; faces with a corner on or behind the eye's plane are dropped.",
               {.space = Space::ndc});

@@ -18,6 +18,16 @@ struct Outputs {
   Ref<Mesh> mesh;
 };
 
+Verdict divide(const Inputs& in, const Params&, const Context& ctx) {
+  return ctx.real([&]<class R>() {
+    const auto column = in.mesh->real<R>("position");
+    const auto clip = column->template values<glm::vec<4, R>>();
+    const std::size_t vertex = kernels::first_to_divide<R>(clip);
+    if (vertex == clip.size()) return off_exact("w is 1 at every vertex: the projection is parallel");
+    return on(fmt::format("w is {:.6g} at vertex {}", clip[vertex].w, vertex));
+  });
+}
+
 Outputs run(const Inputs& in, const Params&, Context& ctx) {
   const auto& resolution = in.camera->resolution;
   if (resolution.x < 1 || resolution.y < 1)
@@ -30,7 +40,8 @@ Outputs run(const Inputs& in, const Params&, Context& ctx) {
     std::size_t without = 0;
     *out = with_positions<Point, Point>(
         *in.mesh, Space::screen, [&](std::span<const Point> clip, std::span<Point> screen) {
-          without = project::clip_to_screen<R>(kernels::Viewport(resolution), clip, screen, no_point);
+          without = project::clip_to_screen<R>(ctx.simulates("perspective_divide"),
+                                               kernels::Viewport(resolution), clip, screen, no_point);
         });
     if (without > 0) *out = without_unplaced(*out, no_point, ctx);
   });
@@ -48,6 +59,7 @@ NodeType nodes::project_viewport() {
       .covers(21)
       .input("mesh", &Inputs::mesh, "A clipped mesh in clip space.", {.space = Space::clip})
       .input("camera", &Inputs::camera, "Whose resolution the picture has.")
+      .effect("perspective_divide", divide, "Positions are divided by w.")
       .output("mesh", &Outputs::mesh,
               "Position on the screen; faces with a corner on or behind the eye's plane are dropped.",
               {.space = Space::screen});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "nodes/kernels/parallel.h"
 #include "nodes/rasterize.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/mesh.h"
@@ -22,6 +23,8 @@ using kernels::Attribute;
 using kernels::AttributeDomain;
 using kernels::Interpolation;
 using kernels::PlaneView;
+
+constexpr std::string_view perspective_name = "perspective_interpolation";
 
 struct Inputs {
   Tiled<Visibility> hits;
@@ -96,6 +99,19 @@ std::vector<Source> add_planes(const Mesh& mesh, PlaneList& planes) {
   return sources;
 }
 
+Verdict perspective(const Inputs& in, const Params& p, const Context& ctx) {
+  if (p.interpolation == Interpolation::affine)
+    return off_user("the graph asks for affine interpolation: textures swim where w changes");
+  return ctx.real([&]<class R>() {
+    const auto column = in.mesh->template real<R>("position");
+    const auto screen = column->template values<glm::vec<4, R>>();
+    const std::size_t vertex =
+        kernels::first_where(screen.size(), [&](std::size_t i) { return screen[i].w != R(1); });
+    if (vertex == screen.size()) return off_exact("1/w is 1 at every vertex: the projection is parallel");
+    return on(fmt::format("1/w is {:.6g} at vertex {}", screen[vertex].w, vertex));
+  });
+}
+
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
   const Frame& hits = in.hits.frame();
   return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
@@ -106,7 +122,7 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
     Interpolator<R> state{in.mesh,
                           in.mesh->template real<R>("position"),
                           hits.pattern,
-                          p.interpolation,
+                          ctx.simulates(perspective_name) ? p.interpolation : Interpolation::affine,
                           std::move(sources),
                           in.hits.read("id"),
                           w};
@@ -187,6 +203,7 @@ NodeType nodes::rasterize_attributes() {
              "perspective.")
       .knob({"affine", "hyperbolic"},
             "affine saves a division a sample and is off by O(k^2) over a depth range of k.")
+      .effect(perspective_name, perspective, "Attributes are weighted by 1/w and divided by their sum.")
       .output("points", &Outputs::points,
               "id, uv with derivatives, N, P, w and other columns; 0 where nothing is seen.");
 }

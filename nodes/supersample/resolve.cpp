@@ -5,6 +5,8 @@
 #include "runtime/buffers/real_rows.h"
 #include "runtime/core/node_type.h"
 
+#include <fmt/format.h>
+
 namespace frustum {
 namespace {
 
@@ -29,7 +31,19 @@ struct State {
   int margin = 0;
   std::vector<RealPlane> planes;  // those of the output, in its order
   bool copies = false;            // some are stored in another precision
+  bool weighs_all = false;        // forced: also where the result is known
+  bool passes = false;            // every pixel is its one sample
 };
+
+// One sample a pixel and a filter that reaches no neighbour: the weighted mean of one number.
+Verdict reconstruction(const Inputs& in, const Params& p, const Context&) {
+  const Frame& from = in.image.frame();
+  const double radius = p.radius.value_or(usual_radius(p.filter));
+  if (from.samples() > 1)
+    return on(fmt::format("{} samples a pixel, where they are not all equal", from.samples()));
+  if (radius <= 0.5) return off_exact("one sample a pixel, and the filter reaches no other");
+  return on(fmt::format("the filter reaches {:.3g} px, where the pixels are not all equal", radius));
+}
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
   const Frame& from = in.image.frame();
@@ -48,10 +62,12 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   State s = ctx.real([&]<class R>() {
     ResolveWeights<R> weights(filter, pattern.samples, pattern.period, pattern.x, pattern.y);
     const int margin = weights.margin();
-    return State{std::move(weights), from.window, margin, {}, false};
+    return State{std::move(weights), from.window, margin};
   });
   for (const RealPlane& plane : planes) s.copies = s.copies || plane.kind != real_kind(ctx.precision);
   s.planes = std::move(planes);
+  s.weighs_all = ctx.forces("reconstruction");
+  s.passes = !ctx.simulates("reconstruction");
   return {std::move(s), {std::move(to)}};
 }
 
@@ -75,7 +91,7 @@ class Filler {
     for (std::size_t p = 0; p < s_.planes.size(); ++p) {
       if (!out_.has(static_cast<int>(p))) continue;
       const Source& source = sources_.emplace_back(gather(static_cast<int>(p)));
-      flat_.push_back(find_flat(source));
+      flat_.push_back(s_.passes ? std::span<std::uint32_t>() : find_flat(source));
       wanted_.push_back(static_cast<int>(p));
     }
     std::vector<const R*> in(wanted_.size());
@@ -84,27 +100,46 @@ class Filler {
     for (int y = rect_.y0; y < rect_.y1; ++y) {
       for (std::size_t i = 0; i < wanted_.size(); ++i) {
         in[i] = sources_[i].at(rect_.x0 - read_.x0, y - read_.y0);
-        flat[i] = flat_[i].data() + static_cast<std::size_t>(y - rect_.y0) * n_;
+        if (!s_.passes) flat[i] = flat_[i].data() + static_cast<std::size_t>(y - rect_.y0) * n_;
         to[i] = out_.row<R>(wanted_[i], 0, y);
       }
       if (wanted_.empty()) return;
       // Every plane lies the same way: all are the tile's own, or all are copies of the same shape.
-      resolving::resolve_row<R>(weights_, {.x0 = rect_.x0,
-                                           .y = y,
-                                           .n = n_,
-                                           .left = s_.window.x0 - rect_.x0,
-                                           .right = s_.window.x1 - rect_.x0,
-                                           .top = s_.window.y0 - y,
-                                           .bottom = s_.window.y1 - y,
-                                           .in = in,
-                                           .sample_stride = sources_[0].sample_stride,
-                                           .row_stride = sources_[0].row_stride,
-                                           .flat = flat,
-                                           .out = to});
+      const kernels::ResolveRow<R> row{.x0 = rect_.x0,
+                                       .y = y,
+                                       .n = n_,
+                                       .left = s_.window.x0 - rect_.x0,
+                                       .right = s_.window.x1 - rect_.x0,
+                                       .top = s_.window.y0 - y,
+                                       .bottom = s_.window.y1 - y,
+                                       .in = in,
+                                       .sample_stride = sources_[0].sample_stride,
+                                       .row_stride = sources_[0].row_stride,
+                                       .flat = flat,
+                                       .out = to};
+      if (s_.passes)
+        for (std::size_t i = 0; i < in.size(); ++i) std::copy_n(in[i], n_, to[i]);
+      else if (s_.weighs_all)
+        weigh_all(row);
+      else
+        resolving::resolve_row<R>(weights_, row);
     }
   }
 
  private:
+  // Weighs where all samples are equal too, and then takes what they are equal to.
+  void weigh_all(kernels::ResolveRow<R> row) {
+    const auto flat = row.flat;
+    const auto nowhere = arena_.take<std::uint32_t>(n_);
+    std::fill(nowhere.begin(), nowhere.end(), 0u);
+    const std::vector<const std::uint32_t*> none(flat.size(), nowhere.data());
+    row.flat = none;
+    resolving::resolve_row<R>(weights_, row);
+    for (std::size_t p = 0; p < flat.size(); ++p)
+      for (std::size_t x = 0; x < n_; ++x)
+        if (flat[p][x] != 0) row.out[p][x] = row.in[p][x];
+  }
+
   // The samples of one plane in R; its origin is the top left corner of what is read.
   struct Source {
     const R* origin;
@@ -208,6 +243,7 @@ NodeType nodes::supersample_resolve() {
                      "Reads (2 r)^2 pixels of samples: less aliasing, more blur, more time.")
       .output("image", &Outputs::image,
               "One value a pixel; where all samples in reach are equal, exactly that value.")
+      .effect("reconstruction", reconstruction, "Samples are weighted by the filter, where they differ.")
       .reads(reads);
 }
 

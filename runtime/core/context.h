@@ -1,6 +1,7 @@
 // What a node may ask of the run it is part of.
 #pragma once
 
+#include "runtime/core/effect.h"
 #include "runtime/core/error.h"
 
 #include <array>
@@ -36,6 +37,8 @@ class Context {
   const CancelFlag* cancel = nullptr;
   std::uint64_t wanted_outputs = ~std::uint64_t{0};  // bit i: somebody reads the i-th declared output
 
+  const EffectPolicy* effects = nullptr;             // null: what the scene calls for, and no more
+
   // Throws Cancelled. Geometry loops call it about once a millisecond of work.
   void poll() const {
     if (cancel != nullptr && cancel->cancelled()) throw Cancelled();
@@ -54,12 +57,29 @@ class Context {
   // A sentence for the user about this run of the node: "12 faces with NaN positions were dropped".
   void warn(std::string code, std::string message) { warnings_.emplace_back(std::move(code), std::move(message)); }
 
+  // Whether run() or prepare() simulates an effect that its node type declares: where the inputs call for it, or it is
+  // forced. An effect that was not decided (a run() called by itself) is simulated.
+  bool simulates(std::string_view effect) const {
+    if (forces(effect)) return true;
+    for (const auto& [name, verdict] : verdicts_)
+      if (name == effect) return verdict.kind == Verdict::Kind::on;
+    return true;
+  }
+  bool forces(std::string_view effect) const { return effects != nullptr && effects->forces(effect); }
+  // By the runtime, before run() or prepare().
+  void decide(std::string_view effect, Verdict verdict) {
+    if (effects != nullptr && effects->skips(effect)) verdict = off_user("it was asked to be skipped");
+    verdicts_.emplace_back(effect, std::move(verdict));
+  }
+  const std::vector<std::pair<std::string, Verdict>>& verdicts() const { return verdicts_; }
+
   const std::vector<std::pair<std::string, std::uint64_t>>& counters() const { return counters_; }
   const std::vector<std::pair<std::string, std::string>>& warnings() const { return warnings_; }
 
  private:
   std::vector<std::pair<std::string, std::uint64_t>> counters_;
   std::vector<std::pair<std::string, std::string>> warnings_;
+  std::vector<std::pair<std::string, Verdict>> verdicts_;
 };
 
 }  // namespace frustum

@@ -138,6 +138,20 @@ class NodeBuilder {
       get_.push_back([](const O& o, std::size_t at) { return detail::PortOf<M>::get(detail::member_at<M>(o, at)); });
     return *this;
   }
+  // Work that is not done where `needed` finds that it would change no bit of the result; run() and prepare() ask
+  // ctx.simulates(name).
+  NodeBuilder& effect(std::string_view name, Verdict (*needed)(const I&, const P&, const Context&), std::string_view doc) {
+    type_.effects.push_back({std::string(name), std::string(doc)});
+    needed_.push_back(needed);
+    return *this;
+  }
+  // Work that is saved where `needed` finds that the final picture does not depend on it.
+  NodeBuilder& shortcut(std::string_view name, Verdict (*needed)(const I&, const P&, const Context&),
+                        std::string_view doc) {
+    effect(name, needed, doc);
+    type_.effects.back().shortcut = true;
+    return *this;
+  }
   // How far tile() looks beyond the rectangle it fills; without it, not at all.
   template <class State>
   NodeBuilder& reads(Rect (*f)(const State&, std::string_view input, Rect)) {
@@ -166,11 +180,15 @@ class NodeBuilder {
                                                          const TiledInput& tiled) {
       if (!from.empty() || tiled.frame) set[i](in, ports[i].offset, from, tiled);
     };
+    const auto decide = [effects = type_.effects, needed = needed_](const I& in, const P& p, Context& ctx) {
+      for (std::size_t i = 0; i < effects.size(); ++i) ctx.decide(effects[i].name, needed[i](in, p, ctx));
+    };
     if (run_ != nullptr) {
-      type_.run = [fill, run = run_, ports = type_.outputs, get = get_](std::span<const std::vector<Buffer>> inputs,
+      type_.run = [fill, decide, run = run_, ports = type_.outputs, get = get_](std::span<const std::vector<Buffer>> inputs,
                                                                         const void* params, Context& ctx) {
         I in{};
         for (std::size_t i = 0; i < inputs.size(); ++i) fill(in, i, inputs[i], {});
+        decide(in, *static_cast<const P*>(params), ctx);
         const O out = run(in, *static_cast<const P*>(params), ctx);
         std::vector<Buffer> buffers;
         buffers.reserve(ports.size());
@@ -178,10 +196,11 @@ class NodeBuilder {
         return buffers;
       };
     } else {
-      type_.prepare = [fill, prepare = prepare_, ports = type_.outputs, frame = frame_](
+      type_.prepare = [fill, decide, prepare = prepare_, ports = type_.outputs, frame = frame_](
                           std::span<const PreparedInput> inputs, const void* params, Context& ctx) {
         I in{};
         for (std::size_t i = 0; i < inputs.size(); ++i) fill(in, i, inputs[i].buffers, inputs[i].tiled);
+        decide(in, *static_cast<const P*>(params), ctx);
         auto [state, out] = prepare(in, *static_cast<const P*>(params), ctx);
         PreparedNode made{std::move(state), {}};
         for (std::size_t i = 0; i < ports.size(); ++i) made.frames.push_back(frame[i](out, ports[i].offset));
@@ -212,6 +231,7 @@ class NodeBuilder {
 
   NodeType type_;
   Fields<P> fields_;
+  std::vector<Verdict (*)(const I&, const P&, const Context&)> needed_;
   std::vector<detail::SetPort<I>> set_;
   std::vector<detail::GetPort<O>> get_;
   std::vector<std::shared_ptr<const Frame> (*)(const O&, std::size_t)> frame_;

@@ -80,6 +80,7 @@ class NodeType {
   std::vector<int> rows;  // of the course's checklist
   int version = 1;        // in the cache key: raised when the same inputs give other bytes
   bool foreign = false;   // a library computes its numbers: same bytes on one processor only
+  std::vector<EffectDoc> effects;  // decided in this order, before run() or prepare()
   std::vector<Port> inputs, outputs;
   ParamType params{.kind = ParamType::Kind::record, .name = "an object"};
 
