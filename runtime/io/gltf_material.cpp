@@ -179,8 +179,8 @@ class Reader {
       const auto offset = t->numbers<2>("offset").value_or(std::array{0.0, 0.0}),
                  scale = t->numbers<2>("scale").value_or(std::array{1.0, 1.0});
       const double angle = t->number("rotation", 0), c = kernels::cos(angle), s = kernels::sin(angle);
-      // offset rotation scale, on (u, 1 - v). The rotation turns as the extension's examples do, and all viewers;
-      // the matrix in its text has the other sign.
+      // offset rotation scale, on (u, 1 - v). The rotation turns as the example of the extension's text does;
+      // the matrix there has the other sign.
       glm::dmat3 down(1), flip(1);
       down[0] = {c * scale[0], -s * scale[0], 0};
       down[1] = {s * scale[1], c * scale[1], 0};
