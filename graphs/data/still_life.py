@@ -130,7 +130,7 @@ TAU = 2 * math.pi
 def lathe(profile):
     def point(s, t):
         r, y = profile(min(1, max(0, t)))
-        r = max(r, 1e-3)
+        r = max(r, 1e-7)
         return (r * math.sin(TAU * s), y, r * math.cos(TAU * s))
     return point
 
