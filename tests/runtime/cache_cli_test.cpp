@@ -113,7 +113,8 @@ TEST(CacheCli, ADamagedFileIsSaidAndThePictureIsRight) {
   for (const auto& e : std::filesystem::recursive_directory_iterator(dir + "/objects"))
     if (e.is_regular_file()) {
       std::string content = text_of(e.path());
-      content[content.size() / 2] ^= 4;
+      char& middle = content[content.size() / 2];
+      middle = static_cast<char>(middle ^ 4);
       std::ofstream(e.path(), std::ios::binary) << content;
     }
   std::filesystem::remove(folder.file("out/teapot.png"));

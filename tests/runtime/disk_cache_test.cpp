@@ -38,7 +38,7 @@ Buffer mesh_of(std::uint32_t faces, double height = 0) {
   auto triangle = Column::make<glm::uvec3>("triangle", Domain::face, faces);
   for (std::uint32_t f = 0; f < faces; ++f) {
     for (std::uint32_t c = 0; c < 3; ++c)
-      position->values<glm::vec3>()[3 * f + c] = {f + c, c * 0.5f, static_cast<float>(height)};
+      position->values<glm::vec3>()[3 * f + c] = glm::vec3(f + c, c / 2, height);
     triangle->values<glm::uvec3>()[f] = {3 * f, 3 * f + 1, 3 * f + 2};
   }
   m.columns = {position, triangle};
@@ -232,7 +232,8 @@ TEST(DiskCache, EveryBitOfTheHeaderCounts) {
   int bit = 0;
   expect_never_wrong(
       [&](std::string bytes, std::mt19937&) {
-        bytes[static_cast<std::size_t>(bit / 8)] ^= static_cast<char>(1 << bit % 8);
+        char& byte = bytes[static_cast<std::size_t>(bit / 8)];
+        byte = static_cast<char>(byte ^ (1 << bit % 8));
         bit = (bit + 1) % 512;
         return bytes;
       },

@@ -135,7 +135,7 @@ void Browser::size(int width_px, int height_px, bool dark) {
   call("Emulation.setDeviceMetricsOverride",
        {{"width", width_px}, {"height", height_px}, {"deviceScaleFactor", 1}, {"mobile", width_px < 600}});
   call("Emulation.setEmulatedMedia",
-       {{"features", {{{"name", "prefers-color-scheme"}, {"value", dark ? "dark" : "light"}}}}});
+       {{"features", json::array({{{"name", "prefers-color-scheme"}, {"value", dark ? "dark" : "light"}}})}});
 }
 
 void Browser::open(const std::string& url) {
