@@ -277,8 +277,10 @@ Report make_report(Session& session, const Graph& graph, const ReportOptions& op
   for (const PlannedNode& n : plan.nodes) data["nodes"].push_back(node_json(graph, n.node, measured));
   report::Blobs blobs;
   for (const PortRef port : run.demand.ports) {
-    const Buffer& b = report.result.buffers.at(port);
-    if (!b) continue;  // an optional output that the node did not make
+    const auto found = report.result.buffers.find(port);
+    if (found == report.result.buffers.end() || !found->second)
+      continue;  // an output that the node did not make
+    const Buffer& b = found->second;
     Json described = report::describe_buffer(b, blobs, options.most_values);
     described["port"] = graph.name(port);
     described["node"] = graph.nodes[port.node].id;

@@ -43,7 +43,8 @@ function header(data) {
 }
 
 function healthSection(data) {
-  const notes = data.diagnostics.map((d) => element("div", {class: d.severity === "error" ? "notice bad" : "notice"},
+  // The first NaN has a notice of its own, with a link to its node.
+  const notes = data.diagnostics.filter((d) => !(data.culprit && d.code === "not_finite_result")).map((d) => element("div", {class: d.severity === "error" ? "notice bad" : "notice"},
       element("div", {class: "code"}, d.code, d.pointer ? ` · ${d.pointer}` : ""), element("div", {}, d.message)));
   if (data.culprit)
     notes.unshift(element("div", {class: "notice bad"}, element("div", {class: "code"}, "not finite"),
