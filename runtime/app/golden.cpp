@@ -37,6 +37,11 @@ Raster restacked(const Raster& from, const Frame& frame) {
   return out;
 }
 
+// The book is a file that people edit: what it names is not trusted to be a name in this folder.
+bool is_digest(const std::string& text) {
+  return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
 Json read_book(const fs::path& path) {
   Json book = Json::parse(read_text(path), nullptr, false);
   if (!book.is_object() || book.value("format", "") != format || !book.contains("entries") ||
@@ -99,6 +104,7 @@ Json GoldenBook::values(const Golden& golden) const {
 
 void GoldenBook::accept(const std::string& key, const std::string& digest, const std::string& reason,
                         const fs::path& staged) {
+  if (const auto old = entries_.find(key); old != entries_.end()) replaced_.insert(old->second.digest);
   entries_[key] = {digest, std::string(version), reason};
   changed_ = true;
   if (staged.empty()) return;
@@ -121,11 +127,10 @@ void GoldenBook::save() {
     const Json read = read_book(book);
     for (const auto& [key, entry] : read["entries"].items()) named.insert(entry.value("digest", ""));
   }
-  for (const char* end : {pixels_end, values_end})
-    for (const fs::path& stored : matching_files(folder_ / ("*" + std::string(end)))) {
-      const std::string file = stored.filename().string();
-      if (!named.contains(file.substr(0, file.find('.')))) fs::remove(stored);
-    }
+  for (const std::string& digest : replaced_)
+    if (!named.contains(digest) && is_digest(digest))
+      for (const char* end : {pixels_end, values_end}) fs::remove(folder_ / (digest + end));
+  replaced_.clear();
 }
 
 }  // namespace frustum

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,14 +43,15 @@ class GoldenBook {
   // which becomes FOLDER/DIGEST with the same extension.
   void accept(const std::string& key, const std::string& digest, const std::string& reason,
               const std::filesystem::path& staged);
-  // Writes the book where something was accepted, and removes stored numbers that no book of the folder names
-  // any more.
+  // Writes the book where something was accepted, and removes the stored numbers that it replaced and no book
+  // of the folder names any more; other files of the folder are left alone.
   void save();
 
  private:
   std::filesystem::path folder_;
   std::string name_;
   std::map<std::string, Golden, std::less<>> entries_;
+  std::set<std::string> replaced_;  // digests that entries had before
   bool changed_ = false;
 };
 

@@ -56,7 +56,7 @@ class SuiteRun {
         jobs_(options.jobs > 0 ? options.jobs : processors()),
         today_(options.today.empty() ? today_utc() : options.today) {
     for (const Suite& suite : suites) {
-      const auto [book, fresh] = books_.try_emplace(suite.file, golden_folder(suite), suite.name);
+      const auto [book, fresh] = books_.try_emplace(suite.file, golden_folder(suite), golden_book(suite));
       for (const SuiteCase& c : suite.cases)
         if (chosen(c, options.filters) && in_shard(options.shard, suite.name, c.id))
           items_.push_back({&suite, &c, &book->second, {}, {}});
@@ -228,6 +228,11 @@ class SuiteRun {
 
 }  // namespace
 
+std::string golden_book(const Suite& suite) {
+  const std::string folder = std::filesystem::absolute(suite.file).parent_path().filename().string();
+  return folder == "suites" ? suite.name : folder + "." + suite.name;
+}
+
 std::string golden_folder(const Suite& suite) {
   return (std::filesystem::path(suite.file).parent_path() / ".." / "golden").lexically_normal().string();
 }
@@ -241,7 +246,7 @@ std::vector<CaseResult> run_suites(Session& session, const std::vector<Suite>& s
 void record_goldens(const std::vector<Suite>& suites, const std::vector<CaseResult>& results,
                     const std::string& reason) {
   for (const Suite& suite : suites) {
-    GoldenBook book(golden_folder(suite), suite.name);
+    GoldenBook book(golden_folder(suite), golden_book(suite));
     for (const CaseResult& r : results)
       if (r.suite_file == suite.file)
         for (const Candidate& c : r.accepted) book.accept(c.key, c.digest, reason, c.staged);

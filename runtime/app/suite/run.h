@@ -38,5 +38,8 @@ void record_goldens(const std::vector<Suite>&, const std::vector<CaseResult>&, c
 
 // Where the goldens of a suite lie.
 std::string golden_folder(const Suite&);
+// The book there: named after the suite's file, and after its folder too where that is not "suites", since the
+// suites of sibling folders keep their books in one place.
+std::string golden_book(const Suite&);
 
 }  // namespace frustum
