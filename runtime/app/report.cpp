@@ -1,8 +1,8 @@
 #include "runtime/app/report.h"
 
-#include "report_assets.h"
 #include "runtime/app/files.h"
 #include "runtime/app/report/buffers.h"
+#include "runtime/app/report/page.h"
 #include "runtime/core/version.h"
 #include "runtime/graph/load.h"
 
@@ -185,66 +185,6 @@ Json culprit_json(const Culprit& c) {
 
 // ----- the page
 
-// JSON inside a <script> element: no '<' at all, so that no text of a graph can end the element.
-std::string script_safe(const Json& data) {
-  std::string out;
-  for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace)) {
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
-  }
-  return out;
-}
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else
-      out += c;
-  }
-  return out;
-}
-
-// The modules as one script: in one page they share their scope, so what they import and export is there.
-std::string as_one_script(std::string_view modules) {
-  std::string out;
-  for (std::size_t at = 0; at < modules.size();) {
-    const std::size_t end = std::min(modules.find('\n', at), modules.size());
-    std::string_view line = modules.substr(at, end - at);
-    if (line.starts_with("export ")) line.remove_prefix(7);
-    if (!line.starts_with("import ")) out.append(line).push_back('\n');
-    at = end + 1;
-  }
-  return out;
-}
-
-// The template with every {{name}} replaced; what is put in is not looked at again.
-std::string filled(std::string_view page, const std::map<std::string_view, std::string>& parts) {
-  std::string out;
-  for (;;) {
-    const auto open = page.find("{{"), close = page.find("}}", open);
-    out += page.substr(0, open);
-    if (close == std::string_view::npos) return out;
-    out += parts.at(page.substr(open + 2, close - open - 2));
-    page.remove_prefix(close + 2);
-  }
-}
-
-std::string page_of(const Json& data, const report::Blobs& blobs) {
-  return filled(report::assets::page_html, {{"title", escaped(data["title"].get<std::string>())},
-                                            {"style", std::string(report::assets::style_css)},
-                                            {"script", as_one_script(report::assets::script_js)},
-                                            {"data", script_safe(data)},
-                                            {"blobs", blobs.html()}});
-}
-
 }  // namespace
 
 Report make_report(Session& session, const Graph& graph, const ReportOptions& options) {
@@ -288,7 +228,7 @@ Report make_report(Session& session, const Graph& graph, const ReportOptions& op
     data["buffers"].push_back(std::move(described));
     report.ports.push_back(graph.name(port));
   }
-  report.page = page_of(data, blobs);
+  report.page = report::page_text(report::Page::run, data, blobs);
   return report;
 }
 

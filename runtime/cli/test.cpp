@@ -1,5 +1,6 @@
 // frustum test SUITE...: runs suites and says what held.
 #include "runtime/app/files.h"
+#include "runtime/app/suite/html.h"
 #include "runtime/app/suite/run.h"
 #include "runtime/cli/command.h"
 
@@ -22,7 +23,8 @@ struct Arguments {
   std::vector<std::string> suites;
   SuiteOptions options;
   bool accept = false, review = false, yes = false, here = false;
-  std::string shard, reason, junit;
+  bool all_pictures = false;
+  std::string shard, reason, junit, html;
 };
 
 bool color_on_stdout() { return color_on_stderr() && ::isatty(STDOUT_FILENO) == 1; }
@@ -114,6 +116,10 @@ int test(Arguments& args, bool json) {
   if (args.accept || args.review) options.goldens = Goldens::propose;
   if (args.accept && !args.review) options.staging = staging.emplace(golden_folder(suites.front())).path();
 
+  std::optional<ScratchFolder> evidence;
+  if (!args.html.empty()) options.evidence = evidence.emplace(fs::temp_directory_path()).path();
+  options.evidence_of_all = args.all_pictures;
+
   Session session;
   const auto results = run_suites(session, suites, options, [&](const CaseResult& r) {
     if (!json) print(to_text(r, color_on_stdout()));
@@ -121,6 +127,8 @@ int test(Arguments& args, bool json) {
   if (results.empty() && options.shard.count == 1) throw UsageError("no case matches the filters");
   if (options.goldens == Goldens::propose) accept(args, suites, results, json);
   if (!args.junit.empty()) write_text(args.junit, junit_text(results));
+  if (evidence)
+    write_text(args.html, suite_page(results, {.evidence = evidence->path(), .date = today_utc()}));
   if (json)
     print(to_json(results));
   else
@@ -165,6 +173,9 @@ void add_results(CLI::App& c, Arguments& args) {
   c.add_flag("--yes", args.yes, "Does not ask before it accepts.");
   c.add_option("--reason", args.reason, "Why, kept with what is accepted.")->type_name("TEXT");
   c.add_option("--junit", args.junit, "Writes the results as JUnit XML.")->type_name("FILE");
+  c.add_option("--html", args.html, "Writes the results as one page, with the pictures that differ.")
+      ->type_name("FILE");
+  c.add_flag("--all-pictures", args.all_pictures, "Puts the pictures of checks that hold into the page too.");
 }
 
 }  // namespace

@@ -12,9 +12,9 @@ namespace frustum {
 
 // Numbers, names (letters, digits, _ and .), pi, parentheses, the functions
 //   abs sqrt exp log sin cos tan asin acos atan floor ceil, atan2 min max pow mod, if(condition, then, else)
-// and, from loosest to tightest, || and &&, the comparisons < <= > >= == != (1 or 0), + -, * /, unary -
-// and !, and ^ (from right to left). Any operand that is NaN gives NaN, in min, max and the comparisons too, so that
-// NaN is never hidden.
+// and, from loosest to tightest, || and &&, the comparisons < <= > >= == != (1 or 0), + -, * /, unary - and
+// !, and ^ (from right to left). Any operand that is NaN gives NaN, in min, max and the comparisons too, so
+// that NaN is never hidden.
 class Expression {
  public:
   // Null where the text is no expression, and `problem` then says why and at which character.

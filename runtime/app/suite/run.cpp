@@ -23,13 +23,6 @@ std::string shell_word(const std::string& word) {
   return out + "'";
 }
 
-std::string today_utc() {
-  const auto day = std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
-  const std::chrono::year_month_day d(day);
-  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(d.year()), static_cast<unsigned>(d.month()),
-                     static_cast<unsigned>(d.day()));
-}
-
 int processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 // What is no UTF-8 in it is replaced, so that it can stand in any report.
@@ -231,6 +224,13 @@ class SuiteRun {
 std::string golden_book(const Suite& suite) {
   const std::string folder = std::filesystem::absolute(suite.file).parent_path().filename().string();
   return folder == "suites" ? suite.name : folder + "." + suite.name;
+}
+
+std::string today_utc() {
+  const auto day = std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
+  const std::chrono::year_month_day d(day);
+  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(d.year()), static_cast<unsigned>(d.month()),
+                     static_cast<unsigned>(d.day()));
 }
 
 std::string golden_folder(const Suite& suite) {

@@ -36,6 +36,8 @@ std::vector<CaseResult> run_suites(Session&, const std::vector<Suite>&, const Su
 // Records what the results propose, in the books of their suites.
 void record_goldens(const std::vector<Suite>&, const std::vector<CaseResult>&, const std::string& reason);
 
+std::string today_utc();  // "2026-11-22"
+
 // Where the goldens of a suite lie.
 std::string golden_folder(const Suite&);
 // The book there: named after the suite's file, and after its folder too where that is not "suites", since the
