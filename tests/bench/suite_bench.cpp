@@ -10,7 +10,7 @@
 namespace frustum {
 namespace {
 
-// The teapot's patches tessellated coarsely and drawn at 16 x 9, with a check of its size: all stages, little work.
+// The teapot tessellated coarsely and drawn at 16 x 9, with a check of its size: all stages, little work.
 std::string small_suite(const std::filesystem::path& folder, int cases) {
   const auto graph = source_root(executable_path()).value_or(".") / "graphs/gallery/teapot_stages.json";
   std::string list;
@@ -34,7 +34,7 @@ void suite_of_small_cases(benchmark::State& state) {
   for (auto _ : state) {
     Session session;
     for (const CaseResult& r : run_suites(session, {*suite}, options, [](const CaseResult&) {}))
-      if (r.verdict != Verdict::pass) return state.SkipWithError(r.failures.front().c_str());
+      if (r.verdict != CaseVerdict::pass) return state.SkipWithError(r.failures.front().c_str());
   }
   state.counters["ms_a_case"] =
       benchmark::Counter(static_cast<double>(state.range(0)) * 1e-3,

@@ -27,7 +27,7 @@ class SuiteCheckTest : public testing::Test {
 void holds(const CaseResult& r) { EXPECT_THAT(r.failures, IsEmpty()) << r.id; }
 void breaks(const CaseResult& r, const std::string& sentence) {
   EXPECT_THAT(r.failures, ElementsAre(HasSubstr(sentence)));
-  EXPECT_EQ(r.verdict, Verdict::fail);
+  EXPECT_EQ(r.verdict, CaseVerdict::fail);
 }
 
 TEST_F(SuiteCheckTest, Shape) {
@@ -127,7 +127,7 @@ TEST_F(SuiteCheckTest, SameAsAnotherPortOrRun) {
   holds(image(R"({"port": "out", "same_as": {"set": {"made:add": 0.25}}, "max": 0.25, "why": "a test"})"));
   breaks(image(R"({"port": "out", "same_as": {"set": {"made:add": 0.25}}, "max": 0.2, "why": "a test"})"),
          "max 0.25, expected at most 0.2");
-  EXPECT_EQ(image(R"({"port": "out", "same_as": {"graph": "none.json"}})").verdict, Verdict::crash)
+  EXPECT_EQ(image(R"({"port": "out", "same_as": {"graph": "none.json"}})").verdict, CaseVerdict::crash)
       << "the world failed";
   breaks(image(R"({"port": "out", "same_as": {"graph": "mesh.json"}, "abs": 1, "why": "a test"})"),
          "it is of kind image, and the other run of kind mesh");
@@ -210,18 +210,18 @@ TEST_P(EveryBound, FailsForNaN) {
   const std::string comparing =
       R"({"port": "out", "same_as": {"set": {"made:nan": false}}, "why": "a test", )" + bound + "}";
   const CaseResult mine = folder.check(R"({"nan": true})", comparing);
-  EXPECT_EQ(mine.verdict, Verdict::fail) << "NaN on this side";
+  EXPECT_EQ(mine.verdict, CaseVerdict::fail) << "NaN on this side";
   EXPECT_GE(mine.failures.size(), 2u) << "the bound fails of itself, beside what is always on";
   const CaseResult other = folder.check(
       "{}", R"({"port": "out", "same_as": {"set": {"made:nan": true}}, "why": "a test", )" + bound + "}");
-  EXPECT_EQ(other.verdict, Verdict::fail) << "NaN on the other side";
+  EXPECT_EQ(other.verdict, CaseVerdict::fail) << "NaN on the other side";
   EXPECT_GE(other.failures.size(), 2u);
   const CaseResult both = folder.check(
       R"({"nan": true})", R"({"port": "out", "same_as": "made.image", "why": "a test", )" + bound + "}");
-  EXPECT_EQ(both.verdict, Verdict::fail) << "NaN on both sides is not the same either";
+  EXPECT_EQ(both.verdict, CaseVerdict::fail) << "NaN on both sides is not the same either";
   const CaseResult none =
       folder.check("{}", R"({"port": "out", "same_as": "made.image", "why": "a test", )" + bound + "}");
-  EXPECT_EQ(none.verdict, Verdict::pass) << testing::PrintToString(none.failures);
+  EXPECT_EQ(none.verdict, CaseVerdict::pass) << testing::PrintToString(none.failures);
 }
 
 INSTANTIATE_TEST_SUITE_P(SuiteCheck, EveryBound,

@@ -32,16 +32,16 @@ TEST(SuiteIsolation, ACrashAndAHangAreResultsAndEverythingElsePasses) {
   options.jobs = 3;
   const auto r = folder.run(cases, options);
   ASSERT_EQ(r.size(), 24u);
-  EXPECT_EQ(r[0].verdict, Verdict::crash);
+  EXPECT_EQ(r[0].verdict, CaseVerdict::crash);
   EXPECT_THAT(r[0].failures, ElementsAre(HasSubstr("signal 11 (Segmentation fault)")));
-  EXPECT_EQ(r[1].verdict, Verdict::timeout);
+  EXPECT_EQ(r[1].verdict, CaseVerdict::timeout);
   EXPECT_THAT(r[1].failures, ElementsAre("it did not end within 1 s"));
-  EXPECT_EQ(r[2].verdict, Verdict::crash);
+  EXPECT_EQ(r[2].verdict, CaseVerdict::crash);
   EXPECT_THAT(r[2].failures, ElementsAre(HasSubstr("exit code 7")));
-  EXPECT_NE(r[3].verdict, Verdict::pass);
+  EXPECT_NE(r[3].verdict, CaseVerdict::pass);
   EXPECT_THAT(r[3].said, HasSubstr("what it said \xEF\xBF\xBD")) << "as UTF-8";
   for (std::size_t i = 4; i < r.size(); ++i)
-    EXPECT_EQ(r[i].verdict, Verdict::pass) << r[i].id << testing::PrintToString(r[i].failures);
+    EXPECT_EQ(r[i].verdict, CaseVerdict::pass) << r[i].id << testing::PrintToString(r[i].failures);
 }
 
 TEST(SuiteIsolation, GivesTheResultsOfOneProcess) {

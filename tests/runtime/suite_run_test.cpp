@@ -33,10 +33,10 @@ TEST(SuiteGolden, IsAcceptedAndThenHeld) {
   EXPECT_THAT(folder.run(golden).at(0).failures,
               ElementsAre(HasSubstr("nothing was accepted yet; frustum test")));
   const auto accepted = folder.accept(golden, "the first").at(0);
-  EXPECT_EQ(accepted.verdict, Verdict::pass);
+  EXPECT_EQ(accepted.verdict, CaseVerdict::pass);
   ASSERT_THAT(accepted.accepted, SizeIs(1));
   EXPECT_EQ(accepted.accepted[0].change, "new");
-  EXPECT_EQ(folder.run(golden).at(0).verdict, Verdict::pass);
+  EXPECT_EQ(folder.run(golden).at(0).verdict, CaseVerdict::pass);
   const Json book = Json::parse(content(folder.files().file("golden/s.json")));
   EXPECT_EQ(book["entries"]["t out"]["reason"], "the first");
   EXPECT_EQ(book["entries"]["t out"]["digest"], accepted.accepted[0].digest);
@@ -47,7 +47,7 @@ TEST(SuiteGolden, ThatDiffersFailsBeyondItsTolerance) {
   const test::SuiteFolder folder;
   folder.accept(with_max);
   folder.graph("image.json", "test.image", R"({"add": 0.005})");
-  EXPECT_EQ(folder.run(with_max).at(0).verdict, Verdict::pass);
+  EXPECT_EQ(folder.run(with_max).at(0).verdict, CaseVerdict::pass);
   EXPECT_THAT(folder.run(golden).at(0).failures, Contains(HasSubstr("is not the accepted")));
   folder.graph("image.json", "test.image", R"({"add": 0.02})");
   EXPECT_THAT(folder.run(with_max).at(0).failures, Contains(HasSubstr("against the accepted one: max 0.02")));
@@ -60,7 +60,7 @@ TEST(SuiteGolden, OfAMeshKeepsItsNumbersWhereATolerancesNeedsThem) {
       "why": "a test"}]})";
   folder.accept(mesh);
   folder.graph("mesh.json", "test.mesh", R"({"scale": 1.05})");
-  EXPECT_EQ(folder.run(mesh).at(0).verdict, Verdict::pass);
+  EXPECT_EQ(folder.run(mesh).at(0).verdict, CaseVerdict::pass);
   folder.graph("mesh.json", "test.mesh", R"({"scale": 1.2})");
   EXPECT_THAT(folder.run(mesh).at(0).failures, Contains(HasSubstr("max 0.2")));
 }
@@ -111,7 +111,7 @@ TEST(SuiteGolden, WithATraceNamesTheFirstPortThatDiffers) {
       R"({"id": "t", "graph": "chain.json", "checks": [{"port": "out", "golden": true, "trace": true}]})";
   chain("0");
   folder.accept(traced);
-  EXPECT_EQ(folder.run(traced).at(0).verdict, Verdict::pass);
+  EXPECT_EQ(folder.run(traced).at(0).verdict, CaseVerdict::pass);
   chain("0.5");
   EXPECT_THAT(folder.run(traced).at(0).failures,
               Contains("the first port that is not what was accepted: first.image"));
@@ -134,9 +134,9 @@ TEST(SuiteRun, ExpectsDiagnosticsExactly) {
   EXPECT_THAT(r[0].failures, IsEmpty());
   EXPECT_THAT(r[1].failures, ElementsAre(HasSubstr("expected the diagnostic cycle"),
                                          HasSubstr("not expected: unknown_type")));
-  EXPECT_EQ(r[2].verdict, Verdict::fail);
-  EXPECT_EQ(r[3].verdict, Verdict::fail);
-  EXPECT_EQ(r[4].verdict, Verdict::crash) << "the world failed";
+  EXPECT_EQ(r[2].verdict, CaseVerdict::fail);
+  EXPECT_EQ(r[3].verdict, CaseVerdict::fail);
+  EXPECT_EQ(r[4].verdict, CaseVerdict::crash) << "the world failed";
   EXPECT_THAT(r[5].failures, ElementsAre(HasSubstr("did you mean 'out'?")));
 }
 
@@ -150,9 +150,9 @@ TEST(SuiteRun, CallsAFailureThatPassesLaterFlaky) {
                  R"({"what": "flaky", "file": ")" + folder.files().file("here") + "\"}");
     return folder.run(R"({"id": "f", "graph": "flaky.json")" + more + "}").at(0);
   };
-  EXPECT_EQ(flaky("").verdict, Verdict::fail);
+  EXPECT_EQ(flaky("").verdict, CaseVerdict::fail);
   const CaseResult r = flaky(R"(, "retry": 2)");
-  EXPECT_EQ(r.verdict, Verdict::flaky);
+  EXPECT_EQ(r.verdict, CaseVerdict::flaky);
   EXPECT_EQ(r.attempts, 2);
   EXPECT_THAT(r.notes, ElementsAre(HasSubstr("attempt 1, fail: ")));
   EXPECT_FALSE(counts_against(r.verdict));
@@ -170,18 +170,18 @@ TEST(SuiteRun, WaivesUntilTheDateHasPassed) {
              options)
         .at(0);
   };
-  EXPECT_EQ(on("2030-06-30", "act").verdict, Verdict::waived);
-  EXPECT_EQ(on("2030-07-01", "act").verdict, Verdict::fail);
-  EXPECT_EQ(on("2030-06-30", "image").verdict, Verdict::pass);
+  EXPECT_EQ(on("2030-06-30", "act").verdict, CaseVerdict::waived);
+  EXPECT_EQ(on("2030-07-01", "act").verdict, CaseVerdict::fail);
+  EXPECT_EQ(on("2030-06-30", "image").verdict, CaseVerdict::pass);
   EXPECT_THAT(on("2030-06-30", "image").notes, ElementsAre(HasSubstr("is not needed")));
-  EXPECT_EQ(on("2030-07-01", "image").verdict, Verdict::fail) << "it is in the way once it has expired";
+  EXPECT_EQ(on("2030-07-01", "image").verdict, CaseVerdict::fail) << "it is in the way once it has expired";
 }
 
 TEST(SuiteRun, SkipsAndSaysWhy) {
   const test::SuiteFolder folder;
   const auto r =
       folder.run(R"({"id": "s", "graph": "none.json", "skip": "needs a file that is not there"})").at(0);
-  EXPECT_EQ(r.verdict, Verdict::skip);
+  EXPECT_EQ(r.verdict, CaseVerdict::skip);
   EXPECT_THAT(r.notes, ElementsAre("skipped: needs a file that is not there"));
 }
 
@@ -207,7 +207,7 @@ TEST(SuiteReport, IsTheSameAfterItLeftItsProcess) {
 
 TEST(SuiteReport, EscapesXml) {
   CaseResult r;
-  r.suite = "s", r.id = "a<b>&\"c\"", r.verdict = Verdict::fail, r.failures = {"1 < 2\x01"};
+  r.suite = "s", r.id = "a<b>&\"c\"", r.verdict = CaseVerdict::fail, r.failures = {"1 < 2\x01"};
   const std::string text = junit_text({r});
   EXPECT_THAT(text, HasSubstr("name=\"a&lt;b&gt;&amp;&quot;c&quot;\""));
   EXPECT_THAT(text, HasSubstr("message=\"1 &lt; 2?\""));
@@ -216,9 +216,9 @@ TEST(SuiteReport, EscapesXml) {
 
 TEST(SuiteReport, CountsEveryVerdict) {
   std::vector<CaseResult> all(verdicts);
-  for (int i = 0; i < verdicts; ++i) all[static_cast<std::size_t>(i)].verdict = static_cast<Verdict>(i);
+  for (int i = 0; i < verdicts; ++i) all[static_cast<std::size_t>(i)].verdict = static_cast<CaseVerdict>(i);
   const Json j = to_json(all);
-  for (int i = 0; i < verdicts; ++i) EXPECT_EQ(j[std::string(name_of(static_cast<Verdict>(i)))], 1);
+  for (int i = 0; i < verdicts; ++i) EXPECT_EQ(j[std::string(name_of(static_cast<CaseVerdict>(i)))], 1);
   EXPECT_EQ(summary_text(all), "1 of 7 cases pass, 1 fail, 1 skip, 1 timeout, 1 crash, 1 waived, 1 flaky\n");
   EXPECT_THAT(junit_text(all), HasSubstr("tests=\"7\" failures=\"1\" errors=\"2\" skipped=\"2\""));
 }

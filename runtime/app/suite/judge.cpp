@@ -213,11 +213,11 @@ void judge_case(Session& session, const SuiteCase& c, const GoldenBook& book, co
   const auto began = std::chrono::steady_clock::now();
   try {
     Judge(session, c, book, options, result).judge();
-    result.verdict = result.failures.empty() ? Verdict::pass : Verdict::fail;
+    result.verdict = result.failures.empty() ? CaseVerdict::pass : CaseVerdict::fail;
   } catch (const Cancelled&) {
     throw;
   } catch (const std::exception& e) {
-    result.verdict = Verdict::crash;
+    result.verdict = CaseVerdict::crash;
     result.failures.emplace_back(e.what());
   }
   result.time = std::chrono::steady_clock::now() - began;

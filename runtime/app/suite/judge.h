@@ -22,7 +22,7 @@ struct JudgeOptions {
   const CancelFlag* cancel = nullptr;
 };
 
-// Verdict pass, fail, or crash where the world failed; `result` has its names already. Throws Cancelled.
+// CaseVerdict pass, fail, or crash where the world failed; `result` has its names already. Throws Cancelled.
 // Nothing else.
 void judge_case(Session&, const SuiteCase&, const GoldenBook&, const JudgeOptions&, CaseResult& result);
 

@@ -37,12 +37,12 @@ std::string indented(std::string_view text) {
 
 double seconds(std::chrono::nanoseconds t) { return std::chrono::duration<double>(t).count(); }
 
-const char* color_of(Verdict v) {
+const char* color_of(CaseVerdict v) {
   switch (v) {
-    case Verdict::pass: return "\033[32m";
-    case Verdict::skip:
-    case Verdict::waived:
-    case Verdict::flaky: return "\033[33m";
+    case CaseVerdict::pass: return "\033[32m";
+    case CaseVerdict::skip:
+    case CaseVerdict::waived:
+    case CaseVerdict::flaky: return "\033[33m";
     default: return "\033[31m";
   }
 }
@@ -53,12 +53,12 @@ std::string junit_case(const CaseResult& r) {
   const std::string notes = r.notes.empty() ? ""
                                             : fmt::format("      <system-out>{}</system-out>\n",
                                                           xml(fmt::format("{}", fmt::join(r.notes, "\n"))));
-  if (r.verdict == Verdict::skip || r.verdict == Verdict::waived)
+  if (r.verdict == CaseVerdict::skip || r.verdict == CaseVerdict::waived)
     return fmt::format("{}>\n      <skipped message=\"{}\"/>\n    </testcase>\n", head,
                        xml(r.notes.empty() ? "" : r.notes.front()));
   if (!counts_against(r.verdict))
     return notes.empty() ? head + "/>\n" : head + ">\n" + notes + "    </testcase>\n";
-  const char* element = r.verdict == Verdict::fail ? "failure" : "error";
+  const char* element = r.verdict == CaseVerdict::fail ? "failure" : "error";
   const std::string said = r.said.empty() ? "" : "\n" + r.said;
   return fmt::format("{}>\n      <{} type=\"{}\" message=\"{}\">{}</{}>\n{}    </testcase>\n", head, element,
                      name_of(r.verdict), xml(r.failures.empty() ? "" : r.failures.front()),
@@ -88,11 +88,11 @@ std::string to_text(const CaseResult& r, bool color) {
 }
 
 std::string summary_text(const std::vector<CaseResult>& results) {
-  std::map<Verdict, int> counts;
+  std::map<CaseVerdict, int> counts;
   for (const CaseResult& r : results) ++counts[r.verdict];
-  std::string out = fmt::format("{} of {} cases pass", counts[Verdict::pass], results.size());
+  std::string out = fmt::format("{} of {} cases pass", counts[CaseVerdict::pass], results.size());
   for (const auto& [verdict, n] : counts)
-    if (verdict != Verdict::pass && n > 0) out += fmt::format(", {} {}", n, name_of(verdict));
+    if (verdict != CaseVerdict::pass && n > 0) out += fmt::format(", {} {}", n, name_of(verdict));
   return out + "\n";
 }
 
@@ -105,9 +105,9 @@ std::string junit_text(const std::vector<CaseResult>& results) {
     double time = 0;
     std::string body;
     for (const CaseResult* r : cases) {
-      failures += r->verdict == Verdict::fail ? 1 : 0;
-      errors += r->verdict == Verdict::crash || r->verdict == Verdict::timeout ? 1 : 0;
-      skipped += r->verdict == Verdict::skip || r->verdict == Verdict::waived ? 1 : 0;
+      failures += r->verdict == CaseVerdict::fail ? 1 : 0;
+      errors += r->verdict == CaseVerdict::crash || r->verdict == CaseVerdict::timeout ? 1 : 0;
+      skipped += r->verdict == CaseVerdict::skip || r->verdict == CaseVerdict::waived ? 1 : 0;
       time += seconds(r->time);
       body += junit_case(*r);
     }

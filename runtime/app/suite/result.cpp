@@ -35,9 +35,11 @@ Json list(const std::vector<T>& items) {
 
 }  // namespace
 
-std::string_view name_of(Verdict v) { return names[static_cast<std::size_t>(v)]; }
+std::string_view name_of(CaseVerdict v) { return names[static_cast<std::size_t>(v)]; }
 
-bool counts_against(Verdict v) { return v == Verdict::fail || v == Verdict::timeout || v == Verdict::crash; }
+bool counts_against(CaseVerdict v) {
+  return v == CaseVerdict::fail || v == CaseVerdict::timeout || v == CaseVerdict::crash;
+}
 
 Json case_to_json(const CaseResult& r) {
   return {{"suite", r.suite},
@@ -70,7 +72,7 @@ CaseResult case_from_json(const Json& j) {
   get("failures", r.failures), get("notes", r.notes), get("said", r.said), get("images_read", r.images_read);
   get("rerun", r.rerun), get("accept", r.accept);
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (j.at("result") == names[i]) r.verdict = static_cast<Verdict>(i);
+    if (j.at("result") == names[i]) r.verdict = static_cast<CaseVerdict>(i);
   r.time = std::chrono::nanoseconds(std::llround(j.at("ms").get<double>() * 1e6));
   for (const Json& o : j.at("outcomes"))
     r.outcomes.push_back({o.at("port"), o.at("check"), o.at("measured"), o.at("bound"), o.at("held")});

@@ -12,11 +12,11 @@
 
 namespace frustum {
 
-enum class Verdict : std::uint8_t { pass, fail, skip, timeout, crash, waived, flaky };
+enum class CaseVerdict : std::uint8_t { pass, fail, skip, timeout, crash, waived, flaky };
 constexpr int verdicts = 7;
-std::string_view name_of(Verdict);
+std::string_view name_of(CaseVerdict);
 // fail, timeout and crash: what makes `frustum test` end with 1.
-bool counts_against(Verdict);
+bool counts_against(CaseVerdict);
 
 // One thing that was asked of one port.
 struct CheckOutcome {
@@ -43,7 +43,7 @@ struct PictureEvidence {
 struct CaseResult {
   std::string suite, suite_file, id;
   std::vector<std::string> tags;
-  Verdict verdict = Verdict::pass;
+  CaseVerdict verdict = CaseVerdict::pass;
   std::vector<std::string> failures;  // one sentence a check that did not hold
   std::vector<std::string> notes;     // what fails nothing: a budget of time, a waiver that is not needed
   std::vector<CheckOutcome> outcomes;

@@ -97,7 +97,7 @@ class SuiteRun {
     Item& item = items_[i];
     if (item.suite_case->skip.empty()) return false;
     item.result = named(item);
-    item.result.verdict = Verdict::skip;
+    item.result.verdict = CaseVerdict::skip;
     item.result.notes.push_back("skipped: " + item.suite_case->skip);
     each_(item.result);
     return true;
@@ -157,14 +157,14 @@ class SuiteRun {
       item.result = case_from_json(Json::parse(end.result));
     } else {
       CaseResult r = named(item);
-      r.verdict = end.kind == IsolatedEnd::Kind::timeout ? Verdict::timeout : Verdict::crash;
+      r.verdict = end.kind == IsolatedEnd::Kind::timeout ? CaseVerdict::timeout : CaseVerdict::crash;
       r.failures.push_back(end.kind == IsolatedEnd::Kind::timeout
                                ? fmt::format("it did not end within {:g} s", timeout_of(item))
                                : fmt::format("its process ended by {}", end.how));
       item.result = std::move(r);
     }
     item.result.time = end.time;
-    if (item.result.verdict != Verdict::pass) item.result.said = readable(end.said);
+    if (item.result.verdict != CaseVerdict::pass) item.result.said = readable(end.said);
   }
 
   // Opening the image module takes as long as many small cases. Once a case needed it, it is opened here, so
@@ -192,7 +192,7 @@ class SuiteRun {
     Item& item = items_[i];
     CaseResult& r = item.result;
     r.notes.insert(r.notes.end(), item.earlier.begin(), item.earlier.end());
-    if (r.verdict == Verdict::pass && r.attempts > 1) r.verdict = Verdict::flaky;
+    if (r.verdict == CaseVerdict::pass && r.attempts > 1) r.verdict = CaseVerdict::flaky;
     if (const auto& waiver = item.suite_case->waiver) apply(*waiver, r);
     each_(r);
   }
@@ -201,10 +201,10 @@ class SuiteRun {
     const std::string what = fmt::format("the waiver until {} ({})", waiver.until, waiver.why);
     if (today_ > waiver.until) {
       r.failures.push_back(what + " has expired");
-      if (!counts_against(r.verdict)) r.verdict = Verdict::fail;
+      if (!counts_against(r.verdict)) r.verdict = CaseVerdict::fail;
     } else if (counts_against(r.verdict)) {
       r.notes.push_back(fmt::format("{}, counted as waived: {}", name_of(r.verdict), what));
-      r.verdict = Verdict::waived;
+      r.verdict = CaseVerdict::waived;
     } else {
       r.notes.push_back(what + " is not needed: it passes");
     }
