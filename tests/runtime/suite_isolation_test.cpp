@@ -5,6 +5,7 @@
 #include "tests/support/suite_runs.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include <sys/wait.h>
 #include <unistd.h>
