@@ -88,7 +88,7 @@ struct Case {
   std::vector<std::string> use, tags;
   JsonText set, matrix, checks, expect;
   std::optional<Precision> precision;
-  std::optional<Budget> budget;
+  Budget budget;
   std::optional<Waiver> waiver;
   std::optional<double> timeout;
   int retry = 0;

@@ -111,7 +111,7 @@ class Reader {
       c.checks.back().pointer = at_.pointer();
     });
     parser_.each("expect", k.expect, [&](const Json& e) { read_expected(e, c); });
-    if (k.budget) read_budget(*k.budget, c.budget);
+    read_budget(k.budget, c.budget);
     if (k.waiver) read_waiver(*k.waiver, c);
     if (!k.id.empty() && !k.graph.empty()) add_cases(k.graph, c, v, suite);
   }
