@@ -62,7 +62,8 @@ TEST(BadSuites, AreManyAndShowEveryCodeOfTheReader) {
   std::set<std::string> shown, codes;
   for (const std::string& name : names()) {
     bool loaded = false;
-    for (const Json& d : diagnostics_of(name, loaded)["diagnostics"]) shown.insert(d["code"]);
+    const Json found = diagnostics_of(name, loaded);
+    for (const Json& d : found["diagnostics"]) shown.insert(d["code"]);
   }
   const std::regex pattern(R"re(\bproblem\(\s*"([a-z_]+)")re");
   for (const auto& entry : fs::directory_iterator(root() / "runtime/app/suite")) {

@@ -101,6 +101,7 @@ class Reader {
     const auto k = parser_.keys<suite_keys::Case>(j);
     if (j.is_object() && (k.id.empty() || k.graph.empty()))
       parser_.missing("a case needs an \"id\" and a \"graph\"");
+    if (!k.id.empty() && !case_ids_.insert(k.id).second) duplicate(k.id);
     SuiteCase c;
     c.id = k.id, c.tags = k.tags, c.precision = k.precision;
     c.skip = k.skip, c.timeout = k.timeout, c.retry = k.retry;
@@ -166,17 +167,20 @@ class Reader {
     if (end == Expanded::too_many)
       at_.problem("too_many_cases",
                   fmt::format("files and matrix make the suite larger than {} cases", most_cases));
-    for (std::size_t i = first; i < suite.cases.size(); ++i)
-      if (!ids_.insert(suite.cases[i].id).second)
-        return at_.inside("id", [&] {
-          at_.problem("duplicate_id", fmt::format("another case is named '{}'", suite.cases[i].id));
-        });
+    for (std::size_t i = first; i < suite.cases.size(); ++i) {
+      const std::string& id = suite.cases[i].id;
+      if (!ids_.insert(id).second && id != c.id) return duplicate(id);
+    }
+  }
+
+  void duplicate(const std::string& id) {
+    at_.inside("id", [&] { at_.problem("duplicate_id", fmt::format("another case is named '{}'", id)); });
   }
 
   SuiteParser parser_;
   ParamReader& at_;
   std::map<std::string, Variation> presets_;
-  std::set<std::string> ids_;
+  std::set<std::string> case_ids_, ids_;  // as written, and with files and values
 };
 
 }  // namespace
