@@ -68,8 +68,16 @@ constexpr CurveIn<R> decoder(Curve c) {
           static_cast<R>(knee)};
 }
 
-/// Linear to encoded, and back; 0 and 1 are fixed points. Relative error in float below 4e-7, in double below 4e-16 plus that of the
-/// curve's own condition at the offset.
+/// The curved piece is nowhere below the end of the straight one: the standard's constants make sRGB step
+/// down by 3e-8 at the joint, and a ramp would not be monotonic there (hard case COL-07).
+template <std::floating_point R>
+R not_below_joint(const CurveIn<R>& k, R curved) {
+  const R joint = k.knee * k.slope;
+  return curved < joint ? joint : curved;
+}
+
+/// Linear to encoded, and back; 0 and 1 are fixed points. Relative error in float below 4e-7, in double below
+/// 4e-16 plus that of the curve's own condition at the offset.
 template <std::floating_point R>
 R encode(Curve c, R v) {
   if (c == Curve::linear) return v;
@@ -77,14 +85,15 @@ R encode(Curve c, R v) {
   const R a = std::abs(v);
   if (a <= k.knee) return std::copysign(a * k.slope, v);
   const R p = kernels::pow(a, k.power);
-  return std::copysign(p * k.scale + (std::min(p, R(1)) * k.rest - k.offset), v);
+  return std::copysign(not_below_joint(k, p * k.scale + (std::min(p, R(1)) * k.rest - k.offset)), v);
 }
 template <std::floating_point R>
 R decode(Curve c, R v) {
   if (c == Curve::linear) return v;
   const CurveIn<R> k = decoder<R>(c);
   const R a = std::abs(v);
-  return std::copysign(a <= k.knee ? a * k.slope : kernels::pow((a + k.offset) / k.scale, k.power), v);
+  if (a <= k.knee) return std::copysign(a * k.slope, v);
+  return std::copysign(not_below_joint(k, kernels::pow((a + k.offset) / k.scale, k.power)), v);
 }
 
 /// From one colour space to another.

@@ -3,6 +3,7 @@
 #include "nodes/kernels/transfer.h"
 #include "runtime/app/export.h"
 #include "runtime/io/color.h"
+#include "runtime/io/image_files.h"
 #include "tests/hard/exact.h"
 #include "tests/hard/stages.h"
 
@@ -117,8 +118,8 @@ void transfer_joints(Trial& t) {
       });
 }
 
-// The values as a grey picture in a file of its own, written and read again.
-std::vector<float> through_a_file(const std::vector<float>& values, const std::string& extension) {
+// The values as a grey picture in a file of its own, written with so many bits and read again.
+std::vector<float> through_a_file(const std::vector<float>& values, const std::string& extension, int bits) {
   constexpr int width = 256;
   const int height = static_cast<int>((values.size() + width - 1) / width);
   Raster raster(Frame{.window = {0, 0, width, height},
@@ -129,7 +130,17 @@ std::vector<float> through_a_file(const std::vector<float>& values, const std::s
       raster.view().row<float>(plane, 0, static_cast<int>(i) / width)[i % width] = values[i];
   const auto path =
       std::filesystem::temp_directory_path() / ("frustum_hard_" + std::to_string(getpid()) + extension);
-  save_raster(raster, path.string());
+  const Rect window = raster.frame().window;
+  const auto sink = open_image_sink({.path = path.string(),
+                                     .region = window,
+                                     .display_window = window,
+                                     .layers = {{"", raster.frame()}},
+                                     .bits = bits,
+                                     .compression = {},
+                                     .metadata = {}});
+  const Tile all = raster.view();
+  sink->write({&all, 1});
+  sink->finish();
   const Raster back = load_raster(path.string());
   std::filesystem::remove(path);
   std::vector<float> out;
@@ -162,7 +173,7 @@ void half_floats(Trial& t) {
       v = std::bit_cast<float>((std::bit_cast<std::uint32_t>(v) & 0xffffe000u) | 0x1000u);  // a tie
     values.push_back(v);
   }
-  const auto got = through_a_file(values, ".exr");
+  const auto got = through_a_file(values, ".exr", 16);
   for (std::size_t i = 0; i < values.size(); ++i) {
     // The textbook cuts digits off, gives infinity beyond the range and flushes what is below it.
     const float v = values[i], cut = std::bit_cast<float>(std::bit_cast<std::uint32_t>(v) & 0xffffe000u);
@@ -171,7 +182,7 @@ void half_floats(Trial& t) {
     t.tally(!std::isfinite(textbook) || Rational(textbook) != want,
             !std::isfinite(got[i]) || Rational(got[i]) != want, {v});
   }
-  const auto broken = through_a_file({nan, infinity, -infinity}, ".exr");
+  const auto broken = through_a_file({nan, infinity, -infinity}, ".exr", 16);
   t.require(std::isnan(broken[0]) && broken[1] == infinity && broken[2] == -infinity,
             "NaN and infinities stay what they are");
 }
@@ -189,7 +200,7 @@ void quantising(Trial& t) {
     for (const float v : {tie, std::nextafter(tie, 0.0F), std::nextafter(tie, 1.0F)}) values.push_back(v);
   }
   for (const int most : {255, 65535}) {
-    const auto got = through_a_file(values, most == 255 ? ".png" : ".tif");
+    const auto got = through_a_file(values, most == 255 ? ".png" : ".tif", most == 255 ? 8 : 16);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const float v = values[i];
       mpz_class want = 0;
@@ -208,8 +219,8 @@ void quantising(Trial& t) {
     std::vector<float> codes;
     for (int k = 0; k <= most; k += most == 255 ? 1 : 17)
       codes.push_back(static_cast<float>(k) / static_cast<float>(most));
-    const auto once = through_a_file(codes, most == 255 ? ".png" : ".tif");
-    const auto twice = through_a_file(once, most == 255 ? ".png" : ".tif");
+    const auto once = through_a_file(codes, most == 255 ? ".png" : ".tif", most == 255 ? 8 : 16);
+    const auto twice = through_a_file(once, most == 255 ? ".png" : ".tif", most == 255 ? 8 : 16);
     for (std::size_t i = 0; i < codes.size(); ++i)
       t.require(once[i] == twice[i] && once[i] == codes[i], "codes come home", {codes[i]});
   }

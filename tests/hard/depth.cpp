@@ -84,15 +84,14 @@ void steep_depth(Trial& t) {
     const vec2 across =
         vec2(-along.y, along.x) * static_cast<float>(0.7 / (1 + std::fabs(along.x) + std::fabs(along.y)));
     const auto far = static_cast<float>(std::fabs(t.random.magnitude(-4, 30)));
-    const std::array<vec4, 3> p{vec4(a, 0, 1), vec4(a + along, far, 1),
-                                vec4(a + along + across, 0.5F * far, 1)};
+    const std::array<vec4, 3> p{vec4(a, 0, 1), vec4(a + along, 0, 1), vec4(a + along + across, far, 1)};
     ScreenTriangles mesh;
     mesh.add(p[0], p[1], p[2], 0);
     const Picture got = filled(mesh.mesh(), 64, 64);
     // The textbook: z = A x + B y + C, C multiplied out.
     const vec2 ab = vec2(p[1]) - a, ac = vec2(p[2]) - a;
     const float area = ab.x * ac.y - ab.y * ac.x;
-    const float z_x = (far * ac.y - 0.5F * far * ab.y) / area, z_y = (0.5F * far * ab.x - far * ac.x) / area;
+    const float z_x = -far * ab.y / area, z_y = far * ab.x / area;
     const float z_0 = -(z_x * a.x + z_y * a.y);
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x) {

@@ -140,7 +140,6 @@ void wrapping(Trial& t) {
 
 void far_apart_texels(Trial& t) {
   const auto textbook = [](float a, float b, float f) { return a + (b - a) * f; };
-  std::vector<std::array<float, 3>> inputs;
   const auto judge = [&](float a, float b, float f) {
     const auto between = kernels::between<float>({a, a, a, a}, {b, b, b, b}, f)[0];
     const auto wrong = [&](float v) {
@@ -148,7 +147,6 @@ void far_apart_texels(Trial& t) {
              (a == b && v != a);
     };
     t.tally(wrong(textbook(a, b, f)), wrong(between), {a, b, f});
-    if (inputs.size() < 1000) inputs.push_back({a, b, f});
   };
   judge(1e8F, 1, 1), judge(1e8F, 100, 1), judge(0.7F, 0.7F, 0.3F);
   for (std::size_t n = t.samples(100000, 10000000); n-- > 0;) {
@@ -168,15 +166,34 @@ void far_apart_texels(Trial& t) {
                          {{red.data(), nullptr, nullptr, nullptr}});
   for (std::size_t i = 0; i < 5; ++i)
     t.require(red[i] >= 1 && red[i] <= 1e8F, "lookups stay between the texels", {u[i]});
-  t.price_over(
-      inputs,
-      [&](const std::array<float, 3>& x) {
-        std::array<float, 4> c;
-        for (float& v4 : c) v4 = textbook(x[0], x[1], x[2]);
-        return c;
+  // The price where it is paid: a row of look-ups between the texels of a picture.
+  constexpr int size = 64;
+  std::vector<float> picture(size * size * 4), us(4096), vs(4096), out(4 * 4096);
+  for (float& c : picture) c = static_cast<float>(t.random.uniform(0, 1));
+  for (std::size_t i = 0; i < us.size(); ++i) {
+    us[i] = static_cast<float>(t.random.uniform(0.1, 0.9)),
+    vs[i] = static_cast<float>(t.random.uniform(0.1, 0.9));
+  }
+  const kernels::TexelLevel whole{size, size, picture.data()};
+  const kernels::TexelPyramid one_level{{&whole, 1}};
+  t.price(
+      [&] {
+        for (std::size_t i = 0; i < us.size(); ++i) {
+          const float x = us[i] * size - 0.5F, y = (1 - vs[i]) * size - 0.5F;
+          const auto low_x = static_cast<int>(x), low_y = static_cast<int>(y);
+          const float fx = x - static_cast<float>(low_x), fy = y - static_cast<float>(low_y);
+          const float* at = picture.data() + (low_y * size + low_x) * 4;
+          for (std::size_t k = 0; k < 4; ++k)
+            out[k * us.size() + i] = textbook(textbook(at[k], at[4 + k], fx),
+                                              textbook(at[4 * size + k], at[4 * size + 4 + k], fx), fy);
+        }
+        keep(out[0]);
       },
-      [](const std::array<float, 3>& x) {
-        return kernels::between<float>({x[0], x[0], x[0], x[0]}, {x[1], x[1], x[1], x[1]}, x[2]);
+      [&] {
+        const auto plane = [&](std::size_t k) { return out.data() + k * us.size(); };
+        kernels::simd::look_up(one_level, kernels::Lookup::bilinear, {us.data(), vs.data()}, us.size(),
+                               {{plane(0), plane(1), plane(2), plane(3)}});
+        keep(out[0]);
       });
 }
 

@@ -29,7 +29,9 @@ HWY_INLINE V encode(const CurveIn<float>& k, V v) {
   const V a = hn::Abs(v);
   const V power = frustum::HWY_NAMESPACE::pow(d, a, hn::Set(d, k.power));
   const V rest = hn::Sub(hn::Mul(hn::Min(power, hn::Set(d, 1.0f)), hn::Set(d, k.rest)), hn::Set(d, k.offset));
-  const V curved = hn::Add(hn::Mul(power, hn::Set(d, k.scale)), rest);
+  V curved = hn::Add(hn::Mul(power, hn::Set(d, k.scale)), rest);
+  const V joint = hn::Set(d, k.knee * k.slope);
+  curved = hn::IfThenElse(hn::Lt(curved, joint), joint, curved);
   return hn::CopySign(hn::IfThenElse(hn::Le(a, hn::Set(d, k.knee)), hn::Mul(a, hn::Set(d, k.slope)), curved),
                       v);
 }
@@ -38,7 +40,9 @@ HWY_INLINE V decode(const CurveIn<float>& k, V v) {
   const D d;
   const V a = hn::Abs(v);
   const V base = hn::Div(hn::Add(a, hn::Set(d, k.offset)), hn::Set(d, k.scale));
-  const V curved = frustum::HWY_NAMESPACE::pow(d, base, hn::Set(d, k.power));
+  V curved = frustum::HWY_NAMESPACE::pow(d, base, hn::Set(d, k.power));
+  const V joint = hn::Set(d, k.knee * k.slope);
+  curved = hn::IfThenElse(hn::Lt(curved, joint), joint, curved);
   return hn::CopySign(hn::IfThenElse(hn::Le(a, hn::Set(d, k.knee)), hn::Mul(a, hn::Set(d, k.slope)), curved),
                       v);
 }
