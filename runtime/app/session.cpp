@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace frustum {
 namespace {
@@ -29,13 +30,13 @@ void report_unknown(const Graph& graph, std::string_view address, Diagnostics& p
 // Other names are of ports of graphs used as nodes: they have a dot, or are the id that the nodes inside
 // begin with.
 std::vector<PortRef> named_ports(const Graph& graph) {
+  std::unordered_set<std::string> graphs;
+  for (const GraphNode& node : graph.nodes)
+    if (const auto slash = node.id.find('/'); slash != std::string::npos)
+      graphs.insert(node.id.substr(0, slash));
   std::vector<PortRef> ports;
-  for (const PortName& n : graph.port_names) {
-    const auto inside = [&](const GraphNode& node) { return node.id.starts_with(n.name + "/"); };
-    if (n.name.find_first_of("./") == std::string::npos &&
-        std::none_of(graph.nodes.begin(), graph.nodes.end(), inside))
-      ports.push_back(n.port);
-  }
+  for (const PortName& n : graph.port_names)
+    if (n.name.find_first_of("./") == std::string::npos && !graphs.contains(n.name)) ports.push_back(n.port);
   return ports;
 }
 

@@ -11,8 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
-#include <tuple>
+#include <set>
 
 namespace frustum::cli {
 namespace {
@@ -80,6 +81,7 @@ struct Outcome {
   std::vector<NodeCaching> caching;  // of the last frame
   bool cache_differs = false;
   std::vector<std::chrono::nanoseconds> times;  // of whole runs
+  std::set<std::array<std::string, 4>> told;    // code, file, pointer and message of the problems
 };
 
 // What --repeat and --cache off say of every node: no cache was asked.
@@ -89,14 +91,10 @@ std::vector<NodeCaching> bypassed(const Graph& graph) {
   return list;
 }
 
-// Every frame has the same warnings.
-void add_new(const Diagnostics& more, Diagnostics& to) {
-  for (const Diagnostic& d : more.list()) {
-    const auto same = [&](const Diagnostic& o) {
-      return std::tie(o.code, o.file, o.pointer, o.message) == std::tie(d.code, d.file, d.pointer, d.message);
-    };
-    if (std::none_of(to.list().begin(), to.list().end(), same)) to.add(d);
-  }
+// Every frame and repetition has the same warnings.
+void add_new(const Diagnostics& more, Outcome& o) {
+  for (const Diagnostic& d : more.list())
+    if (o.told.insert({d.code, d.file, d.pointer, d.message}).second) o.problems.add(d);
 }
 
 // One run of one frame; the outcome gathers over frames and repetitions.
@@ -113,7 +111,7 @@ void run_once(Session& session, const Graph& graph, const RunOptions& options, b
   if (r.cache_differs) o.cache_differs = true;
   if (!keep) o.caching = bypassed(graph);
   if (!o.culprit) o.culprit = r.culprit;
-  add_new(r.problems, o.problems);
+  add_new(r.problems, o);
 }
 
 // Each frame would write over the one before.
@@ -139,7 +137,7 @@ bool run_frame(Session& session, const Arguments& args, bool keep, std::optional
   LoadOptions load = load_options(args.graph);
   load.frame = frame;
   Loaded loaded = session.load(args.graph.path, std::move(load));
-  add_new(loaded.problems, o.problems);
+  add_new(loaded.problems, o);
   if (!loaded.graph) return o.code = bad_input, false;
   RunOptions options;
   apply(args.run, options);

@@ -98,19 +98,19 @@ class EditCounter {
   std::vector<std::size_t> before_, above_, row_;
 };
 
-// The letters in which two addresses can differ: without the family, node or graph that both begin with.
-std::size_t own_letters(std::string_view a, std::string_view b) {
+// Letters that say nothing about what was meant: the family, node or graph that two addresses both begin with.
+std::size_t same_scope(std::string_view a, std::string_view b) {
   std::size_t same = 0;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()) && a[i] == b[i]; ++i)
     if (a[i] == '.' || a[i] == ':' || a[i] == '/' || a[i] == '$') same = i + 1;
-  return std::max(a.size(), b.size()) - same;
+  return same;
 }
 
 // Whether so few edits make a name that was meant and not only another short one.
 bool is_near(std::string_view name, std::string_view known, std::size_t count) {
-  const std::size_t letters = own_letters(name, known);
-  if (letters < 3) return count == 1 && name.size() == known.size();
-  return 2 * count < letters;
+  const std::size_t same = same_scope(name, known);
+  if (name.size() - same < 3) return count == 1 && name.size() == known.size();
+  return 2 * count < std::max(name.size(), known.size()) - same;
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ class Documents {
   }
 
   // nearest_names among `known()`, which is called only while there is work left: of ten thousand unknown
-  // names among ten thousand known ones the first few hundred have suggestions.
+  // names among ten thousand known ones only the first have suggestions.
   std::vector<std::string> suggestions(std::string_view name,
                                        const std::function<std::vector<std::string>()>& known);
 

@@ -161,8 +161,7 @@ class Builder {
   const LoadOptions& options_;
   Diagnostics& problems_;
   std::vector<std::size_t> index_;  // of flat nodes in the graph
-  int naming_budget_ =
-      1000000;  // hops of all names together: graphs that pass on what others pass on multiply them
+  int naming_budget_ = 1000000;  // hops of all names together: graphs that only pass things on multiply them
   Graph graph_;
 };
 

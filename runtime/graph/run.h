@@ -39,8 +39,7 @@ struct Culprit {
 };
 
 struct RunResult {
-  std::map<PortRef, Buffer>
-      buffers;  // of demand.ports: all after a run to the end, else those that were made
+  std::map<PortRef, Buffer> buffers;       // of demand.ports: all at the end `done`, else those that were made
   std::vector<std::string> files;          // written, in order of the outputs
   Diagnostics problems;                    // runtime errors and warnings, each at its node's place
   std::optional<Culprit> culprit;

@@ -49,7 +49,8 @@ ocio::TransformRcPtr decode_transform(kernels::Curve curve) {
   auto t = ocio::ExponentWithLinearTransform::Create();
   t->setNegativeStyle(ocio::NEGATIVE_MIRROR);
   t->setGamma({s.gamma, s.gamma, s.gamma, 1});
-  t->setOffset({s.offset, s.offset, s.offset, 0});
+  const double offset = s.scale - 1;
+  t->setOffset({offset, offset, offset, 0});
   return t;
 }
 

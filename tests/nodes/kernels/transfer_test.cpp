@@ -24,7 +24,7 @@ long double encoded(Curve c, long double v) {
       : a <= static_cast<long double>(s.knee)
           ? static_cast<long double>(s.slope) * a
           : static_cast<long double>(s.scale) * std::pow(a, 1 / static_cast<long double>(s.gamma)) -
-                static_cast<long double>(s.offset);
+                static_cast<long double>(s.scale - 1);
   return v < 0 ? -e : e;
 }
 
