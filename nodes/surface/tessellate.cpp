@@ -235,15 +235,13 @@ NodeType nodes::surface_tessellate() {
              "With a camera, how far the triangles may be off in the picture; raising it makes fewer.",
              {.unit = "px", .range = above(0)})
       .knob({"8", "4", "2", "1", "0.5", "0.25", "0.125", "0.03125"},
-            "Pixels that the silhouette gives away are as many as it is off: error like the tolerance, "
-            "triangles like 1/tolerance.",
-            1.0)
+            "Triangles like 1/tolerance; how pixels err depends on how much silhouette and texture edge they "
+            "see.")
       .param("tolerance", &Params::tolerance,
              "Without a camera, how far they may be off; raising it makes fewer.",
              {.unit = "world units", .range = above(0)})
       .knob({"0.1", "0.03", "0.01", "0.003", "0.001", "0.0001"},
-            "The chord of a segment h is off by h^2: error like the tolerance, triangles like 1/tolerance.",
-            1.0)
+            "The chord of a segment h is off by O(h^2), so triangles are like 1/tolerance.")
       .param("min_segments", &Params::min_segments, "Least number of segments of a patch in u and in v.",
              {.range = between(1, 4096)})
       .param("max_segments", &Params::max_segments,

@@ -78,7 +78,7 @@ font-size:.8rem;line-height:1.4;overflow-wrap:anywhere}
 inline constexpr std::string_view page_script = R"js(
 "use strict";
 const looks=JSON.parse(document.getElementById("points").textContent),look=document.getElementById("look");
-function show(i){document.querySelectorAll(".on").forEach(e=>e.classList.remove("on"));
+function show(i){if(!look)return;document.querySelectorAll(".on").forEach(e=>e.classList.remove("on"));
 document.querySelectorAll('[data-point="'+i+'"]').forEach(e=>e.classList.add("on"));
 const f=document.getElementById("figure"+i),p=looks[i];look.querySelector("h3").textContent=p.name;
 const dl=look.querySelector("dl");dl.textContent="";
