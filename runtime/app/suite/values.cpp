@@ -102,6 +102,7 @@ Values values_of(const Raster& raster) {
   Values v{.series = {}, .window = f.window, .samples = f.samples()};
   const Tile tile = raster.view();
   for (std::size_t p = 0; p < f.planes.size(); ++p) {
+    if (!tile.has(static_cast<int>(p))) continue;  // nobody reads it, so that it has no numbers
     Series& s = v.series.emplace_back(Series{f.planes[p].name, kind_of(f.planes[p].kind), 1, {}});
     s.values.reserve(static_cast<std::size_t>(f.window.area()) * static_cast<std::size_t>(f.samples()));
     for (int sample = 0; sample < f.samples(); ++sample)
