@@ -29,7 +29,7 @@ struct State {
   std::variant<ResolveWeights<float>, ResolveWeights<double>> weights;
   Rect window;
   int margin = 0;
-  std::vector<RealPlane> planes;  // those of the output, in its order
+  std::vector<RealPlane> planes = {};  // those of the output, in its order
   bool copies = false;            // some are stored in another precision
   bool weighs_all = false;        // forced: also where the result is known
   bool passes = false;            // every pixel is its one sample

@@ -35,7 +35,7 @@ void @node@(std::span<const glm::vec<3, R>> in, const glm::vec<3, R>& direction,
 
 constexpr std::string_view geometry_source = R"(#include "nodes/@family@/@node@.h"
 
-#include "nodes/@family@.h"
+@include@ "nodes/@family@.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/core/node_type.h"
 
@@ -82,7 +82,7 @@ NodeType nodes::@family@_@node@() {
 
 constexpr std::string_view geometry_test = R"(#include "nodes/@family@/@node@.h"
 
-#include "nodes/@family@.h"
+@include@ "nodes/@family@.h"
 #include "runtime/buffers/mesh.h"
 @include@ "tests/support/run_node.h"
 
@@ -166,7 +166,7 @@ void @node@(std::span<const R> in, R gain, std::span<R> out) {
 
 constexpr std::string_view pixel_source = R"(#include "nodes/@family@/@node@.h"
 
-#include "nodes/@family@.h"
+@include@ "nodes/@family@.h"
 #include "runtime/buffers/image.h"
 #include "runtime/core/node_type.h"
 
@@ -231,7 +231,7 @@ NodeType nodes::@family@_@node@() {
 
 constexpr std::string_view pixel_test = R"(#include "nodes/@family@/@node@.h"
 
-#include "nodes/@family@.h"
+@include@ "nodes/@family@.h"
 #include "runtime/buffers/image.h"
 @include@ "tests/support/run_node.h"
 

@@ -25,12 +25,6 @@ std::string cell(const Json& value) {
   return quoted + "\"";
 }
 
-std::string csv_row(const Json& cells) {
-  std::string out;
-  for (const Json& c : cells) out += (&c == &cells.front() ? "" : ",") + cell(c);
-  return out + "\r\n";
-}
-
 // Text that is no UTF-8 (names out of files) loses the bytes that are not.
 std::string dump(const Json& j) { return j.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
@@ -78,6 +72,12 @@ void write_json(const Buffer& buffer, const SaveRequest& request, PartialFile& f
 }
 
 }  // namespace
+
+std::string csv_row(const Json& cells) {
+  std::string out;
+  for (const Json& c : cells) out += (&c == &cells.front() ? "" : ",") + cell(c);
+  return out + "\r\n";
+}
 
 std::vector<std::string> saved_as(const BufferType& kind) {
   std::vector<std::string> out;

@@ -12,6 +12,10 @@ namespace frustum {
 // Extensions of the files that a whole buffer of a kind can be saved as, without dots.
 std::vector<std::string> saved_as(const BufferType& kind);
 
+// Cells of JSON as one line of a CSV file (RFC 4180) with its end; numbers in the shortest text that reads back
+// to the same value, null as an empty cell.
+std::string csv_row(const Json& cells);
+
 // Writes the buffer in the format of the path's extension, under a temporary name that is renamed when the
 // file is whole.
 //

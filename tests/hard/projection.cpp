@@ -33,7 +33,7 @@ std::vector<vec4> on_screen(const ClipTriangle& t) {
   std::vector<vec4> clip, screen(ring.size);
   for (std::size_t k = 0; k < ring.size; ++k) clip.push_back(ring.vertex[k].p);
   std::vector<std::uint8_t> no_point(ring.size);
-  project::clip_to_screen<float>(kernels::Viewport({64, 64}), clip, screen, no_point);
+  project::clip_to_screen<float>(true, kernels::Viewport({64, 64}), clip, screen, no_point);
   return screen;
 }
 

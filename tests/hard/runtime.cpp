@@ -265,7 +265,7 @@ void nothing_and_one(Trial& t) {
   t.require(none.id[0] == kernels::no_face && none.z[0] == 1, "no triangles");
   std::vector<glm::vec4> no_points;
   std::vector<std::uint8_t> flags;
-  t.require(project::clip_to_screen<float>(kernels::Viewport({1, 1}), no_points, no_points, flags) == 0,
+  t.require(project::clip_to_screen<float>(true, kernels::Viewport({1, 1}), no_points, no_points, flags) == 0,
             "no points");
   kernels::Stencils rows;
   rows.end_row();

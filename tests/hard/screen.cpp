@@ -92,7 +92,7 @@ Picture drawn(std::span<const ClipTriangle> triangles, int width, int height, do
     std::vector<glm::vec4> clip, screen(ring.size);
     for (std::size_t k = 0; k < ring.size; ++k) clip.push_back(ring.vertex[k].p);
     std::vector<std::uint8_t> no_point(ring.size);
-    project::clip_to_screen<float>(viewport, clip, screen, no_point);
+    project::clip_to_screen<float>(true, viewport, clip, screen, no_point);
     for (std::size_t k = 2; k < ring.size; ++k)
       if ((no_point[0] | no_point[k - 1] | no_point[k]) == 0) out.add(screen[0], screen[k - 1], screen[k], i);
   }

@@ -1,12 +1,12 @@
 #include "runtime/app/sweep/report.h"
 
-#include "runtime/app/export.h"
 #include "runtime/app/files.h"
 #include "runtime/app/metrics/metrics.h"
 #include "runtime/app/sweep/analysis.h"
 #include "runtime/app/text.h"
 #include "runtime/buffers/numbers.h"
 #include "runtime/core/version.h"
+#include "runtime/io/buffer_files.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -116,7 +116,9 @@ std::string sweep_csv(const Sweep& s) {
     row.push_back(p.times.size()), row.push_back(p.work), row.push_back(p.pareto ? 1 : 0);
     rows.push_back(std::move(row));
   }
-  return csv_text({{"columns", columns}, {"rows", rows}});
+  std::string text = csv_row(columns);
+  for (const Json& row : rows) text += csv_row(row);
+  return text;
 }
 
 std::string sweep_text(const Sweep& s, std::size_t steps) {
