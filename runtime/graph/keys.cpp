@@ -1,9 +1,13 @@
 #include "runtime/graph/keys.h"
 
+#include "runtime/core/error.h"
+#include "runtime/core/read_file.h"
 #include "runtime/core/version.h"
 
+#include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include <cerrno>
 #include <fstream>
 #include <vector>
 
@@ -12,14 +16,20 @@ namespace {
 
 // A file that cannot be read hashes as such; the node that opens it says what is wrong.
 void hash_file(const std::string& path, Hasher& h) {
-  std::ifstream file(path, std::ios::binary);
-  h.value(static_cast<bool>(file));
-  std::vector<char> block(1 << 20);
   std::uint64_t size = 0;
-  while (file) {
-    file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    h.bytes(block.data(), static_cast<std::size_t>(file.gcount()));
-    size += static_cast<std::uint64_t>(file.gcount());
+  try {
+    const RegularFile file(path, path);
+    h.value(true);
+    std::vector<char> block(1 << 20);
+    for (ssize_t n = 1; n > 0;) {
+      n = ::read(file.descriptor(), block.data(), block.size());
+      if (n < 0 && errno == EINTR)
+        n = 1;
+      else if (n > 0)
+        h.bytes(block.data(), static_cast<std::size_t>(n)), size += static_cast<std::uint64_t>(n);
+    }
+  } catch (const WorldError&) {
+    h.value(false);
   }
   h.value(size);
 }
