@@ -158,7 +158,7 @@ void describe(Fields<Case>& f) {
       .field("retry", &Case::retry, "Further attempts where it does not pass; then it is flaky.",
              {.range = between(0, 10)})
       .field("skip", &Case::skip, "Why it is not run.")
-      .field("waiver", &Case::waiver, "Why a failure does not count for now.");
+      .field("waiver", &Case::waiver, "Why a failure does not count until a date.");
 }
 
 void describe(Fields<Preset>& f) {
