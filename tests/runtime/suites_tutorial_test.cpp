@@ -63,7 +63,7 @@ void run_commands(const std::string& text, const test::TempFolder& folder) {
   }
 }
 
-TEST(SuitesPage, IsATutorialThatRunsAsWritten) {
+TEST(SuitesTutorial, RunsAsWritten) {
   const test::TempFolder folder;
   fs::create_directories(folder.file("suites"));
   int files = 0, commands = 0;
