@@ -49,7 +49,8 @@ TEST(SuiteHtml, ShowsWhatDiffersAndSwapsThePictures) {
   browser.size(1280, 900);
   browser.open("file://" + page);
   EXPECT_EQ(browser.evaluate("document.querySelectorAll('details.case').length"), 2);
-  EXPECT_THAT(browser.evaluate("document.querySelector('h1').textContent"), HasSubstr("2 cases of 2"));
+  EXPECT_THAT(browser.evaluate("document.querySelector('h1').textContent").get<std::string>(),
+              HasSubstr("2 cases of 2"));
   browser.evaluate(R"((async () => {
     for (const d of document.querySelectorAll("details.case")) d.open = true;
     for (let i = 0; document.querySelector(".compare")?.dataset.ready !== "true"; ++i) {
