@@ -75,7 +75,7 @@ TEST(SuiteHtml, ShowsWhatDiffersAndSwapsThePictures) {
   EXPECT_EQ(swapped[0], before[1]);
   EXPECT_EQ(swapped[1], before[0]);
   EXPECT_EQ(nlohmann::json::parse(browser.evaluate(pixels).get<std::string>()), before);
-  EXPECT_THAT(browser.evaluate("document.querySelector('.commands').textContent"),
+  EXPECT_THAT(browser.evaluate("document.querySelector('.cases').textContent"),
               HasSubstr("--filter 'teapot'"));
 
   browser.size(400, 900, true);
