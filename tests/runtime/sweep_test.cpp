@@ -94,9 +94,9 @@ TEST(SweepAnalysis, TheFrontIsWhatNothingDominates) {
 
 TEST(SweepAnalysis, BuysAreRankedByHalvingsPerMillisecond) {
   Sweep s;
-  s.points = {made(10, 0.8), made(14, 0.4), made(11, 0.4), made(9, 0.7), made(12, 0.9)};
+  s.points = {made(10, 0.8), made(14, 0.4), made(11, 0.4), made(9, 0.7), made(12, 0.9), made(50, 0)};
   analyse(s);
-  ASSERT_EQ(s.steps.size(), 3u) << "what is worse is no buy";
+  ASSERT_EQ(s.steps.size(), 3u) << "neither what is worse nor the reference itself";
   EXPECT_EQ(s.steps[0].point, 3u) << "better and faster";
   EXPECT_EQ(s.steps[1].point, 2u);
   EXPECT_NEAR(s.steps[1].halvings_per_ms, 1, 1e-9);

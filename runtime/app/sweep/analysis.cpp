@@ -62,6 +62,7 @@ std::vector<SweepStep> steps_from_the_first(const Sweep& s) {
     step.time_ms = milliseconds(median_of(s.points[i])) - time;
     step.error_ratio = error > 0 ? badness(s, s.points[i]) / error : 1;
     if (!(step.error_ratio < 1)) continue;
+    if (step.error_ratio == 0 && step.time_ms > 0) continue;  // the reference itself: no halving ends there
     step.halvings_per_ms = step.time_ms > 0 ? -std::log2(step.error_ratio) / step.time_ms
                                             : std::numeric_limits<double>::infinity();
     steps.push_back(step);
