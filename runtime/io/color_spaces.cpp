@@ -1,5 +1,6 @@
 #include "runtime/io/color_spaces.h"
 
+#include "nodes/kernels/matrix.h"
 #include "runtime/io/primaries.h"
 
 #include <algorithm>
@@ -47,24 +48,27 @@ Matrix3 adaptation(const Vector3& white) {
 
 }  // namespace
 
+// Each entry is the exact sum of the three products, rounded: a picture that goes around the spaces and home
+// drifts by the rounding of the matrices (hard case COL-02).
 Matrix3 product(const Matrix3& a, const Matrix3& b) {
+  using kernels::plus, kernels::two_product;
   Matrix3 out{};
   for (std::size_t r = 0; r < 3; ++r)
     for (std::size_t c = 0; c < 3; ++c)
-      out[3 * r + c] = a[3 * r] * b[c] + a[3 * r + 1] * b[3 + c] + a[3 * r + 2] * b[6 + c];
+      out[3 * r + c] = plus(plus(two_product(a[3 * r], b[c]), two_product(a[3 * r + 1], b[3 + c])),
+                            two_product(a[3 * r + 2], b[6 + c]))
+                           .hi;
   return out;
 }
 
 Matrix3 inverse(const Matrix3& m) {
-  const auto minor = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
-    return m[a] * m[d] - m[b] * m[c];
-  };
-  const Matrix3 adjugate{minor(4, 5, 7, 8),  -minor(1, 2, 7, 8), minor(1, 2, 4, 5),
-                         -minor(3, 5, 6, 8), minor(0, 2, 6, 8),  -minor(0, 2, 3, 5),
-                         minor(3, 4, 6, 7),  -minor(0, 1, 6, 7), minor(0, 1, 3, 4)};
-  const double det = m[0] * adjugate[0] + m[1] * adjugate[3] + m[2] * adjugate[6];
+  kernels::Square<3> columns;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) columns[c][r] = m[static_cast<std::size_t>(3 * r + c)];
+  const auto inverted = kernels::inverse<3>(columns).value().matrix;
   Matrix3 out{};
-  for (std::size_t i = 0; i < 9; ++i) out[i] = adjugate[i] / det;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) out[static_cast<std::size_t>(3 * r + c)] = inverted[c][r];
   return out;
 }
 
