@@ -59,7 +59,7 @@ void draw_orientation(const std::string& path) {
 
 // TRI-01: how often each pixel of a mesh without gaps is covered; the textbook left, ours right.
 void draw_cracks(const std::string& path) {
-  constexpr int size = 96, zoom = 4, gap = 16, offset = 4000;
+  constexpr int size = 96, zoom = 4, gap = 16, offset = 12000;
   stability::Random random(7);
   constexpr int cells = 14;
   constexpr float cell = (size + 8.0F) / cells;
@@ -148,7 +148,7 @@ std::vector<stability::Illustration> illustrations() {
        "FND-07.",
        draw_orientation},
       {"stability_cracks.png",
-       "A mesh without gaps, 4000 pixels from the origin. Grey pixels are covered once, as all should be; "
+       "A mesh without gaps, 12 000 pixels from the origin. Grey pixels are covered once, as all should be; "
        "red ones twice, blue ones not at all. "
        "Edge functions in float (left) and on an integer grid (right). Case TRI-01.",
        draw_cracks},
