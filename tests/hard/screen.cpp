@@ -121,11 +121,12 @@ std::vector<int> seen(const ClipTriangle& triangle, int width, int height) {
   std::vector<int> out;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      int hits = 0;
+      // The middle too: what is thinner than the probes' distance slips between them.
+      int hits = rays.meets(x_ndc(x + 0.5), y_ndc(y + 0.5)) ? 1 : 0;
       for (const double dx : {-off, off})
         for (const double dy : {-off, off})
           hits += rays.meets(x_ndc(x + 0.5 + dx), y_ndc(y + 0.5 + dy)) ? 1 : 0;
-      out.push_back(hits == 4 ? 1 : (hits == 0 ? 0 : -1));
+      out.push_back(hits == 5 ? 1 : (hits == 0 ? 0 : -1));
     }
   return out;
 }
