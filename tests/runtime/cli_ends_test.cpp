@@ -138,7 +138,9 @@ TEST(CliEnds, ATerminalThatGoesAwayLeavesNoTemporaryFile) {
 
 TEST(CliEnds, OutputThatIsLostIsExit3) {
   const std::string program = quoted(test::frustum_program());
-  for (const std::string command : {" nodes --json", " check " + quoted(stages), " --help", " --version"}) {
+  const std::string check = " check " + quoted(stages);
+  for (const std::string& command :
+       {std::string(" nodes --json"), check, std::string(" --help"), std::string(" --version")}) {
     const auto full = shell(program + command + " >/dev/full");
     EXPECT_EQ(full.code, 3) << command;
     EXPECT_THAT(full.err, HasSubstr("cannot write to the standard output: No space left on device"))

@@ -60,7 +60,9 @@ TEST(Color, GreysStayNeutralAndWhiteKeepsItsBits) {
         ColorConfig::embedded().conversion(a.name, b.name).apply(&r, &g, &blue, 1);
         EXPECT_EQ(r, g) << a.name << " to " << b.name;
         EXPECT_EQ(r, blue) << a.name << " to " << b.name;
-        if (grey == 1) EXPECT_EQ(r, 1) << a.name << " to " << b.name;
+        if (grey == 1) {
+          EXPECT_EQ(r, 1) << a.name << " to " << b.name;
+        }
       }
     }
 }

@@ -309,12 +309,13 @@ TEST(DiskCache, EvictsWhatWasUsedLongestAgo) {
 TEST(DiskCache, RemovesWhatAProcessLeftHalfWritten) {
   const TempFolder folder;
   DiskCache cache(folder.path());
-  write_file(folder.path() + "/tmp/old", "x");
-  write_file(folder.path() + "/tmp/new", "x");
-  fs::last_write_time(folder.path() + "/tmp/old", fs::file_time_type::clock::now() - std::chrono::hours(2));
+  const std::string temporary = folder.path() + "/tmp";
+  write_file(temporary + "/old", "x");
+  write_file(temporary + "/new", "x");
+  fs::last_write_time(temporary + "/old", fs::file_time_type::clock::now() - std::chrono::hours(2));
   cache.evict();
-  EXPECT_FALSE(fs::exists(folder.path() + "/tmp/old"));
-  EXPECT_TRUE(fs::exists(folder.path() + "/tmp/new")) << "somebody may be writing it";
+  EXPECT_FALSE(fs::exists(temporary + "/old"));
+  EXPECT_TRUE(fs::exists(temporary + "/new")) << "somebody may be writing it";
 }
 
 // A file system of its own, as large as stated; not there where the system does not allow mounting.
