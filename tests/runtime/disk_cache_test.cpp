@@ -207,8 +207,12 @@ void expect_never_wrong(Alter&& alter, int rounds) {
     write_file(file, altered);
     DiskCache cache(folder.path());
     const Buffer a = load(cache, 1, mesh), b = load(cache, 2, image);
-    if (a) EXPECT_EQ(a.digest(), mesh.digest());
-    if (b) EXPECT_EQ(b.digest(), image.digest());
+    if (a) {
+      EXPECT_EQ(a.digest(), mesh.digest());
+    }
+    if (b) {
+      EXPECT_EQ(b.digest(), image.digest());
+    }
     const bool missed = !a || !b;
     misses += missed ? 1 : 0;
     EXPECT_EQ(missed, altered != whole) << file;

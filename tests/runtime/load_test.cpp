@@ -460,9 +460,9 @@ TEST(LoadGraph, FramesOfAGraphThatHasNoneAreAWarning) {
     LoadOptions options;
     options.frame = 3;
     Lines out;
-    for (const Diagnostic& d :
-         load(graph_with(front, params + R"("outputs": { "o": { "from": "clip" } }, )"), options)
-             .problems.list())
+    const Loaded loaded =
+        load(graph_with(front, params + R"("outputs": { "o": { "from": "clip" } }, )"), options);
+    for (const Diagnostic& d : loaded.problems.list())
       if (d.code == "no_frame_parameter") out.push_back(d.code);
     return out;
   };
