@@ -169,12 +169,13 @@ TEST(CliEnds, ClosedStreamsDoNotBecomeFiles) {
 TEST(CliEnds, PipesAndDevicesAreRefusedAtOnce) {
   const TempFolder folder;
   ASSERT_EQ(::mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo(folder.file("pipe.obj").c_str(), 0600), 0);
   const auto graph =
       folder.write("g.json", graph_with(R"("i": { "type": "io.load_image", "params": { "file": "pipe" } })",
                                         R"("o": { "from": "i" })"));
-  const auto mesh =
-      folder.write("m.json", graph_with(R"("i": { "type": "io.load_mesh", "params": { "file": "pipe" } })",
-                                        R"("o": { "from": "i" })"));
+  const auto mesh = folder.write(
+      "m.json", graph_with(R"("i": { "type": "io.load_mesh", "params": { "file": "pipe.obj" } })",
+                           R"("o": { "from": "i" })"));
   for (const auto& command :
        std::vector<std::vector<std::string>>{{"check", folder.file("pipe")},
                                              {"check", "/dev/zero"},

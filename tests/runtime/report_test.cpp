@@ -104,7 +104,7 @@ TEST(Report, ShowsTheRunInABrowserWithoutAComplaint) {
 
 TEST(Report, TheProbeShowsTheStoredValue) {
   const TempFolder folder;
-  ASSERT_EQ(frustum(small({"report", stages, "--want", "pixels", "--want", "hits.hits", "-o",
+  ASSERT_EQ(frustum(small({"report", stages, "--want", "pixels", "--want", "hits.visibility", "-o",
                            folder.file("page.html")}))
                 .code,
             0);

@@ -130,7 +130,7 @@ TEST(SuiteRun, ExpectsDiagnosticsExactly) {
          {"id": "good", "graph": "image.json", "expect": {"code": "cycle"}},
          {"id": "none", "graph": "bad.json"},
          {"id": "file", "graph": "none.json"},
-         {"id": "port", "graph": "image.json", "checks": [{"port": "ot"}]})");
+         {"id": "port", "graph": "image.json", "checks": [{"port": "oout"}]})");
   EXPECT_THAT(r[0].failures, IsEmpty());
   EXPECT_THAT(r[1].failures, ElementsAre(HasSubstr("expected the diagnostic cycle"),
                                          HasSubstr("not expected: unknown_type")));

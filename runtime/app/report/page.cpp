@@ -1,6 +1,6 @@
 #include "runtime/app/report/page.h"
 
-#include "report_assets.h"
+#include "runtime/app/report_assets.h"
 
 #include <nlohmann/json.hpp>
 

@@ -50,8 +50,11 @@ TEST(SceneCamera, RefusesImpossibleNumbers) {
   EXPECT_THROW(camera({{"fov_y", 180}}), std::runtime_error);
   EXPECT_THROW(camera({{"resolution", {0, 10}}}), std::runtime_error);
   EXPECT_THROW(camera({{"fovy", 30}}), std::runtime_error);
-  EXPECT_FALSE(scene::fault_of_camera({std::nan(""), 0, 0}, {}, {}, 1, 2).empty());
-  EXPECT_TRUE(scene::fault_of_camera({}, {}, {}, 1, 2).empty());
+  const glm::dvec3 eye(0, 0, 5), target(0), up(0, 1, 0);
+  EXPECT_FALSE(scene::fault_of_camera({std::nan(""), 0, 0}, target, up, 1, 2).empty());
+  EXPECT_FALSE(scene::fault_of_camera(eye, eye, up, 1, 2).empty());
+  EXPECT_FALSE(scene::fault_of_camera(eye, target, {}, 1, 2).empty());
+  EXPECT_TRUE(scene::fault_of_camera(eye, target, up, 1, 2).empty());
 }
 
 }  // namespace
