@@ -81,7 +81,9 @@ TEST(CliEnds, ARunRefusedForItsMemorySaysSo) {
   with_json.emplace_back("--json");
   const auto object = frustum(with_json);
   EXPECT_EQ(object.code, 2);
-  EXPECT_EQ(codes(json::parse(object.out)), std::vector<std::string>{"memory"});
+  EXPECT_THAT(codes(json::parse(object.out)),
+              testing::AllOf(testing::Not(testing::IsEmpty()), testing::Each("memory")))
+      << "nodes that run side by side may both be refused";
 }
 
 struct Interrupted {
