@@ -10,12 +10,12 @@
 
 namespace frustum {
 
-// Appends n - 2 triangles of indices into `corners`, wound like the polygon, and returns true where they
-// tile it without overlap: a fan where that is right (every convex polygon), else ears cut one at a time.
-//   corners  n >= 3, nearly in a plane; the polygon is seen along its Newell normal
-// Where no ear can be found (the outline crosses itself, or has no area), and above 4096 corners that are
-// no fan (ears cost n^2), the rest becomes a fan and the result is false.
-// Source: Meisters 1975, Polygons have ears.
+// Appends n - 2 triangles of indices into `corners`, wound like the polygon: kernels::triangulate_polygon
+// of the polygon as it is seen along the axis nearest to its Newell normal (one coordinate is dropped and
+// none is rounded, so that straight edges stay straight).
+//   corners  n >= 3, nearly in a plane, of any size
+// True where they tile it without overlap; false where it crosses itself as seen so, has no area (below
+// n 2^-50 times the square of its extent even its side is lost in rounding) or is not finite.
 bool triangulate(std::span<const glm::dvec3> corners, std::vector<std::array<std::uint32_t, 3>>& out);
 
 }  // namespace frustum
