@@ -1,9 +1,9 @@
 #include "runtime/app/diverge.h"
 
-#include "runtime/app/text.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/numbers.h"
 #include "runtime/core/error.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // --cache and --cache-size, for the commands that run graphs.
 #include "runtime/app/observers.h"
-#include "runtime/app/text.h"
 #include "runtime/cli/command.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

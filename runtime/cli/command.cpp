@@ -1,7 +1,7 @@
 #include "runtime/cli/command.h"
 
 #include "runtime/app/simd.h"
-#include "runtime/app/text.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -2,8 +2,8 @@
 // came from.
 #include "runtime/app/export.h"
 #include "runtime/app/provenance.h"
-#include "runtime/app/text.h"
 #include "runtime/cli/command.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

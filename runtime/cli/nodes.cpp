@@ -1,7 +1,7 @@
 // frustum nodes [TYPE]: the catalogue, a family of it, or one node in full.
 #include "runtime/app/catalog.h"
-#include "runtime/app/text.h"
 #include "runtime/cli/command.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -133,9 +133,10 @@ int nodes(const std::string& wanted, bool only_knobs, bool json) {
 void add_nodes(CLI::App& app, Invocation& chosen) {
   auto wanted = std::make_shared<std::string>();
   auto only_knobs = std::make_shared<bool>(false);
-  CLI::App& c = add_command(app, chosen, "nodes", "Lists the node types, those of a family, or shows one in full.",
-                            "frustum nodes clip.homogeneous",
-                            [wanted, only_knobs, &chosen] { return nodes(*wanted, *only_knobs, chosen.json); });
+  CLI::App& c =
+      add_command(app, chosen, "nodes", "Lists the node types, those of a family, or shows one in full.",
+                  "frustum nodes clip.homogeneous",
+                  [wanted, only_knobs, &chosen] { return nodes(*wanted, *only_knobs, chosen.json); });
   c.add_option("type", *wanted, "A node type, or a family of them such as clip.")->type_name("TYPE");
   c.add_flag("--knobs", *only_knobs,
              "Only the parameters that trade accuracy for time, from cheap to exact.");

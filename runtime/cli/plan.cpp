@@ -1,6 +1,6 @@
 // frustum plan GRAPH: what would run and why, what not, what streams and what is held whole.
-#include "runtime/app/text.h"
 #include "runtime/cli/command.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,6 @@
 #include "runtime/cli/progress.h"
 
-#include "runtime/app/text.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>

@@ -2,8 +2,8 @@
 #include "runtime/app/report.h"
 
 #include "runtime/app/files.h"
-#include "runtime/app/text.h"
 #include "runtime/cli/command.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

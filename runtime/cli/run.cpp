@@ -1,9 +1,9 @@
 // frustum run GRAPH: makes the wanted files and buffers.
 #include "runtime/app/files.h"
 #include "runtime/app/observers.h"
-#include "runtime/app/text.h"
 #include "runtime/cli/command.h"
 #include "runtime/cli/progress.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>

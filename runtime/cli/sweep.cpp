@@ -1,8 +1,8 @@
 // frustum sweep GRAPH: what accuracy costs in time.
 #include "runtime/app/sweep/markdown.h"
 #include "runtime/app/sweep/report.h"
-#include "runtime/app/text.h"
 #include "runtime/cli/command.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 #include "runtime/app/stability/report.h"
 
-#include "runtime/app/text.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 #include "runtime/app/suite/read.h"
 
 #include "runtime/app/files.h"
-#include "runtime/app/text.h"
+#include "runtime/core/text.h"
 #include "runtime/graph/source_text.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // What run_suites() found, as text and as JUnit XML.
 #include "runtime/app/suite/result.h"
-#include "runtime/app/text.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,8 +3,8 @@
 #include "runtime/app/files.h"
 #include "runtime/app/metrics/metrics.h"
 #include "runtime/app/sweep/analysis.h"
-#include "runtime/app/text.h"
 #include "runtime/buffers/numbers.h"
+#include "runtime/core/text.h"
 #include "runtime/core/version.h"
 #include "runtime/io/buffer_files.h"
 

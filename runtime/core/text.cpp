@@ -1,4 +1,4 @@
-#include "runtime/app/text.h"
+#include "runtime/core/text.h"
 
 #include <fmt/format.h>
 
