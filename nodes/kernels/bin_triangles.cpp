@@ -19,12 +19,14 @@ struct Chunk {
 template <class R>
 class Binner {
  public:
-  Binner(const ScreenMesh<R>& mesh, const SamplePositions& pattern, PixelRect window)
-      : mesh_(mesh), box_(sample_box(pattern)), window_(window) {
+  Binner(const ScreenMesh<R>& mesh, const SamplePositions& pattern, PixelRect window,
+         const std::function<void(std::uint64_t)>& claim)
+      : mesh_(mesh), box_(sample_box(pattern)), window_(window), claim_(claim) {
     bins_.window = window;
     bins_.columns = (window.x1 - window.x0 + TriangleBins::size - 1) / TriangleBins::size;
     bins_.rows = (window.y1 - window.y0 + TriangleBins::size - 1) / TriangleBins::size;
     order_by_origin();
+    this->claim(mesh.face.size() * sizeof(BoxedTriangle));
     boxed_.reset(new BoxedTriangle[mesh.face.size()]);
   }
 
@@ -41,6 +43,10 @@ class Binner {
   }
 
  private:
+  void claim(std::uint64_t bytes) const {
+    if (claim_) claim_(bytes);
+  }
+
   // Faces are drawn by ascending (origin, face), so that of equal depths the first drawn is the one to keep.
   void order_by_origin() {
     if (std::is_sorted(mesh_.origin.begin(), mesh_.origin.end())) return;
@@ -127,6 +133,7 @@ class Binner {
       for (std::size_t c = 0; c < chunks_.size(); ++c) next += std::exchange(cursor_[c * bins + bin], next);
     }
     bins_.first[bins] = next;
+    claim(next * sizeof(BinEntry));
     bins_.entries.resize(next);
   }
 
@@ -141,6 +148,7 @@ class Binner {
   const ScreenMesh<R>& mesh_;
   SampleBox box_;
   PixelRect window_;
+  const std::function<void(std::uint64_t)>& claim_;
   TriangleBins bins_;
   std::vector<std::uint32_t> order_;        // empty where faces already stand in drawing order
   std::unique_ptr<BoxedTriangle[]> boxed_;  // per chunk, from its begin
@@ -151,11 +159,14 @@ class Binner {
 }  // namespace
 
 template <std::floating_point R>
-TriangleBins bin_triangles(const ScreenMesh<R>& mesh, const SamplePositions& pattern, PixelRect window) {
-  return Binner<R>(mesh, pattern, window).run();
+TriangleBins bin_triangles(const ScreenMesh<R>& mesh, const SamplePositions& pattern, PixelRect window,
+                           const std::function<void(std::uint64_t)>& claim) {
+  return Binner<R>(mesh, pattern, window, claim).run();
 }
 
-template TriangleBins bin_triangles(const ScreenMesh<float>&, const SamplePositions&, PixelRect);
-template TriangleBins bin_triangles(const ScreenMesh<double>&, const SamplePositions&, PixelRect);
+template TriangleBins bin_triangles(const ScreenMesh<float>&, const SamplePositions&, PixelRect,
+                                    const std::function<void(std::uint64_t)>&);
+template TriangleBins bin_triangles(const ScreenMesh<double>&, const SamplePositions&, PixelRect,
+                                    const std::function<void(std::uint64_t)>&);
 
 }  // namespace frustum::kernels

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -36,9 +37,12 @@ struct TriangleBins {
 // Bins every triangle that may cover a sample of the window; those whose bounding box misses all samples are
 // left out, and so are bins that lie outside one of a large triangle's edges.
 //   window  at most 65536 px wide and high, within +-65536 px
-// The result does not depend on the number of threads. Memory: O(triangles + bins + entries). Parallel with
-// oneTBB.
+//   claim   called with bytes of memory before they are taken; may throw
+// The result does not depend on the number of threads. Memory: O(triangles + bins + entries); an entry is 8
+// bytes, and a triangle has one in every bin that its bounding box touches and its edges do not exclude.
+// Parallel with oneTBB.
 template <std::floating_point R>
-TriangleBins bin_triangles(const ScreenMesh<R>& mesh, const SamplePositions& pattern, PixelRect window);
+TriangleBins bin_triangles(const ScreenMesh<R>& mesh, const SamplePositions& pattern, PixelRect window,
+                           const std::function<void(std::uint64_t)>& claim = {});
 
 }  // namespace frustum::kernels

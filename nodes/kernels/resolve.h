@@ -27,10 +27,18 @@ class ResolveWeights {
   /// Offsets in 2^-12 px, [sample][y mod period][x mod period]; the period is a power of two.
   ResolveWeights(const Filter& filter, int samples, int period, std::span<const std::uint16_t> x,
                  std::span<const std::uint16_t> y)
-      : margin_(static_cast<int>(std::ceil(filter.radius + 0.5)) - 1), samples_(samples), period_(period) {
+      : margin_(margin_of(filter)), samples_(samples), period_(period) {
     const FilterCurve<R> curve(filter);
     fill(curve, x, across_, has_across_);
     fill(curve, y, down_, has_down_);
+  }
+
+  /// What an object of these numbers holds.
+  static std::uint64_t bytes(const Filter& filter, int samples, int period) {
+    const auto rows =
+        static_cast<std::uint64_t>(2 * margin_of(filter) + 1) * static_cast<std::uint64_t>(samples);
+    return 2 * sizeof(R) * rows * static_cast<std::uint64_t>(period) *
+           (static_cast<std::uint64_t>(period) + padding);
   }
 
   /// Pixels to either side that the filter may touch: d + offset - 1/2 lies in [-radius, radius) for an
@@ -50,6 +58,10 @@ class ResolveWeights {
   const R* down(int dy, int s, int x, int y) const { return at(down_, dy, s, x, y); }
 
  private:
+  static constexpr std::size_t offsets = 4096;  // that a sample can have within its pixel, a side
+
+  static int margin_of(const Filter& filter) { return static_cast<int>(std::ceil(filter.radius + 0.5)) - 1; }
+
   std::size_t row() const { return static_cast<std::size_t>(period_) + padding; }
 
   const R* at(const std::vector<R>& table, int d, int s, int x, int y) const {
@@ -62,7 +74,11 @@ class ResolveWeights {
 
   void fill(const FilterCurve<R>& curve, std::span<const std::uint16_t> offset, std::vector<R>& table,
             std::vector<bool>& any) const {
-    for (int d = -margin_; d <= margin_; ++d)
+    std::vector<R> at(offsets);
+    table.reserve(static_cast<std::size_t>((2 * margin_ + 1) * samples_ * period_) * row());
+    for (int d = -margin_; d <= margin_; ++d) {
+      for (std::size_t i = 0; i < offsets; ++i)
+        at[i] = curve(static_cast<R>(d) + static_cast<R>(i) * R(0x1p-12) - R(0.5));
       for (int s = 0; s < samples_; ++s) {
         bool found = false;
         for (int v = 0; v < period_; ++v)
@@ -70,11 +86,12 @@ class ResolveWeights {
             const auto column = u & static_cast<std::size_t>(period_ - 1);
             const auto i =
                 static_cast<std::size_t>(s * period_ + v) * static_cast<std::size_t>(period_) + column;
-            table.push_back(curve(static_cast<R>(d) + static_cast<R>(offset[i]) * R(0x1p-12) - R(0.5)));
+            table.push_back(at[offset[i]]);
             found = found || table.back() != R(0);
           }
         any.push_back(found);
       }
+    }
   }
 
   int margin_, samples_, period_;

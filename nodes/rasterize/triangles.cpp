@@ -34,7 +34,8 @@ using State = std::variant<Filler<float>, Filler<double>>;
 
 Rect window_of(const Mesh& mesh) {
   if (!mesh.camera)
-    throw NodeError("no_camera", "the mesh has passed no projection, so its picture has no resolution");
+    throw NodeError("no_camera", "the mesh has passed no projection, so its picture has no resolution",
+                    at_input("mesh"));
   const glm::ivec2 size = mesh.camera->resolution;
   constexpr int limit = 65536;
   if (size.x > limit || size.y > limit)
@@ -54,7 +55,7 @@ std::span<const std::uint32_t> origins_of(const Mesh& mesh) {
 }
 
 template <class R>
-Filler<R> make_filler(const Inputs& in, Rect window) {
+Filler<R> make_filler(const Inputs& in, Rect window, Context& ctx) {
   Ref<Column> position = in.mesh->real<R>("position");
   Ref<SamplePattern> pattern = in.pattern.value_or(nullptr);
   const kernels::ScreenMesh<R> screen{position->values<glm::vec<4, R>>(), in.mesh->triangles(),
@@ -62,7 +63,8 @@ Filler<R> make_filler(const Inputs& in, Rect window) {
   const auto order =
       in.mesh->camera->reversed_z ? kernels::DepthOrder::reversed : kernels::DepthOrder::standard;
   TriangleRasterizer<R> rasterizer(screen, positions_of(pattern.get()),
-                                   {window.x0, window.y0, window.x1, window.y1}, order);
+                                   {window.x0, window.y0, window.x1, window.y1}, order,
+                                   [&ctx](std::uint64_t bytes) { ctx.claim(bytes); });
   return {in.mesh, std::move(position), std::move(pattern), std::move(rasterizer)};
 }
 
@@ -80,7 +82,7 @@ void report(const kernels::TriangleBins& bins, Context& ctx) {
 Prepared<State, Outputs> prepare(const Inputs& in, const Params&, Context& ctx) {
   const Rect window = window_of(*in.mesh);
   return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
-    Filler<R> filler = make_filler<R>(in, window);
+    Filler<R> filler = make_filler<R>(in, window, ctx);
     report(filler.rasterizer.bins(), ctx);
     const Plane z{"Z", plane_kind_of<R>};
     Frame visibility{window, filler.pattern, {{"id", PlaneKind::u32}, z}};

@@ -11,8 +11,12 @@ template <std::floating_point R>
 class TriangleRasterizer {
  public:
   TriangleRasterizer(const kernels::ScreenMesh<R>& mesh, const kernels::SamplePositions& pattern,
-                     kernels::PixelRect window, kernels::DepthOrder order)
-      : mesh_(mesh), pattern_(pattern), order_(order), bins_(kernels::bin_triangles(mesh, pattern, window)) {}
+                     kernels::PixelRect window, kernels::DepthOrder order,
+                     const std::function<void(std::uint64_t)>& claim = {})
+      : mesh_(mesh),
+        pattern_(pattern),
+        order_(order),
+        bins_(kernels::bin_triangles(mesh, pattern, window, claim)) {}
 
   const kernels::TriangleBins& bins() const { return bins_; }
 

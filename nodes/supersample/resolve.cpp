@@ -30,9 +30,9 @@ struct State {
   Rect window;
   int margin = 0;
   std::vector<RealPlane> planes = {};  // those of the output, in its order
-  bool copies = false;            // some are stored in another precision
-  bool weighs_all = false;        // forced: also where the result is known
-  bool passes = false;            // every pixel is its one sample
+  bool copies = false;                 // some are stored in another precision
+  bool weighs_all = false;             // forced: also where the result is known
+  bool passes = false;                 // every pixel is its one sample
 };
 
 // One sample a pixel and a filter that reaches no neighbour: the weighted mean of one number.
@@ -60,6 +60,7 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
     to.planes.push_back({plane.name, real_kind(ctx.precision)});
   }
   State s = ctx.real([&]<class R>() {
+    ctx.claim(ResolveWeights<R>::bytes(filter, pattern.samples, pattern.period));
     ResolveWeights<R> weights(filter, pattern.samples, pattern.period, pattern.x, pattern.y);
     const int margin = weights.margin();
     return State{std::move(weights), from.window, margin};
