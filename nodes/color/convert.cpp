@@ -36,6 +36,17 @@ struct State {
   }
 };
 
+// Names of a configuration that is a file are looked up when it is read.
+void check(const Params& p) {
+  if (!p.config.empty()) return;
+  const Ref<ColorConfig> config = ColorConfig::open(p.config);
+  for (const auto& [param, name] : {std::pair{"to", &p.to}, std::pair{"from", &p.from}}) try {
+      if (!name->empty()) config->resolve(*name);
+    } catch (const NodeError& e) {
+      throw NodeError(e.code, e.what(), at_param(param));
+    }
+}
+
 PlaneKind kind_of(const Frame& f, int plane) { return f.planes[static_cast<std::size_t>(plane)].kind; }
 
 std::string space_of(const Inputs& in, const Params& p) {
@@ -162,6 +173,7 @@ NodeType nodes::color_convert() {
                  "Who converts between embedded spaces: frustum's exact curves, or OpenColorIO.")
           .knob({"ocio", "exact"},
                 "OpenColorIO's optimised curves are off by up to 7.6e-7, in the toe relatively 2.5e-4.")
+          .check(check)
           .effect("color_conversion", conversion, "Every colour is converted.")
           .output("image", &Outputs::image,
                   "The same window, samples and planes, in the colour space asked for.");

@@ -34,8 +34,11 @@ Raster layer_of_file(const Raster& pixels, const Params& p) {
                   near.empty() ? "" : fmt::format("; did you mean '{}'?", near.front())));
 }
 
+void check(const Params& p) {
+  if (p.file.empty()) throw NodeError("no_file", "no file is named", at_param("file"));
+}
+
 Outputs run(const Inputs&, const Params& p, Context& ctx) {
-  if (p.file.empty()) throw NodeError("no_file", "no file is named");
   const std::string space = p.space.empty() ? p.space : ColorConfig::open({})->resolve(p.space);
   Raster pixels = read_image(p.file.resolved, p.file.written, p.subimage).raster;
   if (!p.layer.empty()) pixels = layer_of_file(pixels, p);
@@ -58,6 +61,7 @@ NodeType nodes::io_load_image() {
                  "A layer of an EXR file by its name: its colours become R G B A; empty: all planes.")
           .param("space", &Params::space,
                  "Colour space to take the file's colours as, instead of what the file says.")
+          .check(check)
           .output("image", &Outputs::image,
                   "One value a pixel: R G B with premultiplied A, and the file's other channels.");
   depend_on_color_environment(type);

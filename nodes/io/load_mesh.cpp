@@ -27,8 +27,10 @@ const MeshReader& reader_of(const FilePath& file) {
     if (reader.extension == kind) return reader;
     known.push_back(fmt::format(".{}", reader.extension));
   }
-  throw NodeError("unknown_format", fmt::format("{}: meshes are read from {} files, not from .{}",
-                                                file.written, fmt::join(known, ", "), kind));
+  throw NodeError("unknown_format",
+                  fmt::format("{}: meshes are read from {} files, not from .{}", file.written,
+                              fmt::join(known, ", "), kind),
+                  at_param("file"));
 }
 
 // What the mesh file names beside itself is part of what the result depends on.
@@ -47,8 +49,12 @@ void depend_on_named_files(NodeType& type) {
   };
 }
 
+void check(const Params& p) {
+  if (p.file.empty()) throw NodeError("no_file", "no file is named", at_param("file"));
+  reader_of(p.file);
+}
+
 Outputs run(const Inputs&, const Params& p, Context& ctx) {
-  if (p.file.empty()) throw NodeError("no_file", "no file is named");
   const MeshReader& reader = reader_of(p.file);
   const FileBytes bytes(p.file);
   return {std::make_shared<Mesh>(reader.read(bytes.text(), p.file, ctx))};
@@ -67,6 +73,7 @@ NodeType nodes::io_load_mesh() {
           .param("file", &Params::file,
                  "A .gltf, .glb, .obj, .ply or .stl file; polygons become triangles, faces keep their "
                  "materials.")
+          .check(check)
           .output(
               "mesh", &Outputs::mesh,
               "The vertices of the file, of a glTF every instance in its place; normals it lacks are made.",

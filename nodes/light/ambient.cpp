@@ -15,9 +15,12 @@ struct Outputs {
   Ref<LightSet> light;
 };
 
-Outputs run(const Inputs&, const Params& p, Context&) {
+void check(const Params& p) {
   if (!is_radiance(p.color.rgb))
-    throw NodeError("not_finite", "the colour of the light is not a finite number");
+    throw NodeError("not_finite", "the colour of the light is not a finite number", at_param("color"));
+}
+
+Outputs run(const Inputs&, const Params& p, Context&) {
   return {one_light(Light{.kind = Light::Kind::ambient, .color = p.color.rgb})};
 }
 
@@ -29,6 +32,7 @@ NodeType nodes::light_ambient() {
       .covers(55, 62)
       .param("color", &Params::color, "Linear Rec.709; raising it brightens what no other light reaches.",
              {.range = at_least(0)})
+      .check(check)
       .output("light", &Outputs::light, "The light, for the lights of shade.surface.");
 }
 

@@ -16,10 +16,15 @@ struct Outputs {
   Ref<LightSet> light;
 };
 
+void check(const Params& p) {
+  if (!travel_direction(p.direction))
+    throw NodeError("zero_direction", "the direction of the light has no length", at_param("direction"));
+}
+
 Outputs run(const Inputs&, const Params& p, Context&) {
-  const auto direction = travel_direction(p.direction);
-  if (!direction) throw NodeError("zero_direction", "the direction of the light has no length");
-  return {one_light(Light{.kind = Light::Kind::directional, .color = p.color.rgb, .direction = *direction})};
+  return {one_light(Light{.kind = Light::Kind::directional,
+                          .color = p.color.rgb,
+                          .direction = travel_direction(p.direction).value()})};
 }
 
 }  // namespace
@@ -32,6 +37,7 @@ NodeType nodes::light_directional() {
              "The way the light travels, in world space; its length does not matter.")
       .param("color", &Params::color, "Linear Rec.709; a white surface facing the light gets this colour.",
              {.range = at_least(0)})
+      .check(check)
       .output("light", &Outputs::light, "The light, for the lights of shade.surface.");
 }
 

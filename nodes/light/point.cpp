@@ -17,11 +17,16 @@ struct Outputs {
   Ref<LightSet> light;
 };
 
-Outputs run(const Inputs&, const Params& p, Context&) {
-  if (!is_place(p.position)) throw NodeError("not_finite", "the position of the light is not finite");
+void check(const Params& p) {
+  if (!is_place(p.position))
+    throw NodeError("not_finite", "the position of the light is not finite", at_param("position"));
   if (!falls_off(p.attenuation))
     throw NodeError("bad_attenuation",
-                    "the attenuation coefficients must be finite, not negative and not all zero");
+                    "the attenuation coefficients must be finite, not negative and not all zero",
+                    at_param("attenuation"));
+}
+
+Outputs run(const Inputs&, const Params& p, Context&) {
   return {one_light(Light{.kind = Light::Kind::point,
                           .color = p.color.rgb,
                           .position = p.position,
@@ -40,6 +45,7 @@ NodeType nodes::light_point() {
       .param("attenuation", &Params::attenuation,
              "x, y, z: the colour is divided by x + y d + z d^2, d the distance; raising one dims the light.",
              {.range = at_least(0)})
+      .check(check)
       .output("light", &Outputs::light, "The light, for the lights of shade.surface.");
 }
 

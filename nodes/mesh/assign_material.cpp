@@ -36,8 +36,8 @@ std::vector<std::uint8_t> chosen(const std::vector<Material>& all, const std::op
     known += fmt::format("{}'{}'", known.empty() ? "" : ", ", m.name);
   }
   if (std::find(marks.begin(), marks.end(), 1) == marks.end())
-    throw NodeError("unknown_material",
-                    fmt::format("the mesh has no material '{}'; it has {}", *name, known));
+    throw NodeError("unknown_material", fmt::format("the mesh has no material '{}'; it has {}", *name, known),
+                    at_param("instead_of"));
   return marks;
 }
 
@@ -46,8 +46,10 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
   const std::size_t faces = mesh.faces();
   const auto first = static_cast<std::size_t>(p.first);
   if (first > faces || (p.count && static_cast<std::size_t>(*p.count) > faces - first))
-    throw NodeError("no_such_faces", fmt::format("faces {} to {} are asked for, and the mesh has {}", first,
-                                                 p.count ? p.first + *p.count - 1 : p.first, faces));
+    throw NodeError("no_such_faces",
+                    fmt::format("faces {} to {} are asked for, and the mesh has {}", first,
+                                p.count ? p.first + *p.count - 1 : p.first, faces),
+                    at_param("first"));
   std::vector<Material> materials = materials_of(mesh);
   const auto marks = chosen(materials, p.instead_of);
   auto of = Column::make<std::uint32_t>("material", Domain::face, faces);

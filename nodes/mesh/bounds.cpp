@@ -51,7 +51,8 @@ Ref<Table> table_of(const Measured& m) {
 Outputs run(const Inputs& in, const Params&, Context& ctx) {
   const Measured m = measure(*in.mesh, ctx);
   if (m.box.empty())
-    throw NodeError("no_bounds", "the mesh has no face with a finite corner, so it has no bounds");
+    throw NodeError("no_bounds", "the mesh has no face with a finite corner, so it has no bounds",
+                    at_input("mesh"));
   return {table_of(m), std::make_shared<Number>(Number{2 * kernels::norm(m.box.half_size())}),
           std::make_shared<Matrix>(Matrix{mesh::fitting_matrix(m.box)})};
 }

@@ -38,23 +38,27 @@ struct Outputs {
   Ref<Mesh> mesh;
 };
 
+auto map_of(const Placement& at) { return mesh::placement(at.scale, at.axis, at.degrees, at.translate); }
+
+void check(const Params& p) {
+  for (std::size_t i = 0; i < p.placements.size(); ++i)
+    if (!map_of(p.placements[i]))
+      throw NodeError("singular_transform",
+                      fmt::format("placement {}: no factor of its scale may be zero, nor its axis", i),
+                      at_param(fmt::format("placements/{}", i)));
+}
+
 std::vector<kernels::Affine> maps_of(const Inputs& in, const Params& p) {
   std::vector<kernels::Affine> maps;
   for (std::size_t i = 0; in.matrices && i < in.matrices->size(); ++i) {
     const auto map = kernels::affine_from_matrix((*in.matrices)[i]->value);
     if (!map)
       throw NodeError("singular_transform",
-                      fmt::format("matrix {} needs the last row 0 0 0 1 and an inverse", i));
+                      fmt::format("matrix {} needs the last row 0 0 0 1 and an inverse", i),
+                      at_input("matrices"));
     maps.push_back(*map);
   }
-  for (std::size_t i = 0; i < p.placements.size(); ++i) {
-    const Placement& at = p.placements[i];
-    const auto map = mesh::placement(at.scale, at.axis, at.degrees, at.translate);
-    if (!map)
-      throw NodeError("singular_transform",
-                      fmt::format("placement {}: no factor of its scale may be zero, nor its axis", i));
-    maps.push_back(*map);
-  }
+  for (const Placement& at : p.placements) maps.push_back(map_of(at).value());
   if (maps.empty()) maps.emplace_back();
   return maps;
 }
@@ -204,6 +208,7 @@ NodeType nodes::mesh_instance() {
              "Affine maps, one a copy, before the placements; transform.affine makes them.")
       .param("placements", &Params::placements,
              "Stretched, then turned, then moved copies; without any place there is one copy as it is.")
+      .check(check)
       .output(
           "mesh", &Outputs::mesh,
           "All copies in world space; mirrored ones have their fronts outside; column instance tells them.",

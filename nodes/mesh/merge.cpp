@@ -189,7 +189,8 @@ class Merge {
 };
 
 Outputs run(const Inputs& in, const Params&, Context& ctx) {
-  if (in.meshes.empty()) throw NodeError("no_meshes", "there is no mesh to merge: link at least one");
+  if (in.meshes.empty())
+    throw NodeError("no_meshes", "there is no mesh to merge: link at least one", at_input("meshes"));
   if (in.meshes.size() == 1) return {in.meshes[0]};
   auto out = std::make_shared<Mesh>(Merge(in.meshes).merged(ctx));
   ctx.count("triangles", out->faces());

@@ -31,8 +31,10 @@ Verdict divide(const Inputs& in, const Params&, const Context& ctx) {
 Outputs run(const Inputs& in, const Params&, Context& ctx) {
   const auto& resolution = in.camera->resolution;
   if (resolution.x < 1 || resolution.y < 1)
-    throw NodeError("impossible_camera", fmt::format("the resolution is {} x {}, and must be at least 1 x 1",
-                                                     resolution.x, resolution.y));
+    throw NodeError(
+        "impossible_camera",
+        fmt::format("the resolution is {} x {}, and must be at least 1 x 1", resolution.x, resolution.y),
+        at_input("camera"));
   auto out = std::make_shared<Mesh>();
   ctx.real([&]<class R>() {
     using Point = glm::vec<4, R>;

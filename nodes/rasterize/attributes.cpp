@@ -160,7 +160,8 @@ void check_and_copy(const std::uint32_t* from, int count, std::uint32_t faces, s
   if (greatest > faces)
     throw NodeError("wrong_mesh",
                     fmt::format("face {} is seen, but the mesh has {} faces: the hits are of another mesh",
-                                greatest - 1, faces));
+                                greatest - 1, faces),
+                    at_input("mesh"));
   if (to != nullptr) std::copy_n(from, count, to);
 }
 

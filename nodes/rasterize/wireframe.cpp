@@ -250,8 +250,10 @@ class Drawing {
     if (face == no_face) return false;
     const auto triangles = s_.seen->triangles();
     if (face >= triangles.size())
-      throw NodeError("wrong_mesh", fmt::format("face {} is seen, but the mesh 'seen' has {} faces", face,
-                                                triangles.size()));
+      throw NodeError(
+          "wrong_mesh",
+          fmt::format("face {} is seen, but the mesh 'seen' has {} faces", face, triangles.size()),
+          at_input("seen"));
     const glm::uvec3& t = triangles[face];
     const auto p = s_.screen->template values<glm::vec<4, R>>();
     const double slope = wireframe::depth_slope(p[t.x], p[t.y], p[t.z]);

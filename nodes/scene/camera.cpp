@@ -23,16 +23,21 @@ struct Outputs {
   Ref<Camera> camera;
 };
 
+double far_of(const Params& p) { return p.far.value_or(std::numeric_limits<double>::infinity()); }
+
+void check(const Params& p) {
+  const auto fault = scene::fault_of_camera(p.eye, p.target, p.up, p.near, far_of(p));
+  if (!fault.empty()) throw NodeError("impossible_camera", std::string(fault.what), at_param(fault.param));
+}
+
 Outputs run(const Inputs&, const Params& p, Context&) {
   auto c = std::make_shared<Camera>();
   c->eye = p.eye, c->target = p.target, c->up = p.up;
   c->fov_y = p.fov_y * std::numbers::pi / 180;
-  c->near_z = p.near, c->far_z = p.far.value_or(std::numeric_limits<double>::infinity());
+  c->near_z = p.near, c->far_z = far_of(p);
   c->height = p.height;
   c->reversed_z = p.reversed_z;
   c->resolution = p.resolution;
-  const auto fault = scene::fault_of_camera(c->eye, c->target, c->up, c->near_z, c->far_z);
-  if (!fault.empty()) throw NodeError("impossible_camera", std::string(fault));
   return {std::move(c)};
 }
 
@@ -62,6 +67,7 @@ NodeType nodes::scene_camera() {
       .param("resolution", &Params::resolution,
              "Width and height of the picture; their ratio is that of the view.",
              {.unit = "px", .range = between(1, 65536)})
+      .check(check)
       .output("camera", &Outputs::camera, "The camera, for the nodes that project, tessellate and shade.");
 }
 

@@ -7,17 +7,26 @@
 
 namespace frustum::scene {
 
-// What is wrong with a camera's numbers, or nothing. An infinite far plane is allowed, and so is an up along the
+// What is wrong with a camera's numbers, and the parameter to change; empty where nothing is.
+struct CameraFault {
+  std::string_view param = {}, what = {};
+  bool empty() const { return what.empty(); }
+};
+
+// An infinite far plane is allowed, and so is an up along the
 // view: project.view reports what it does about that.
-inline std::string_view fault_of_camera(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up,
-                                        double near_z, double far_z) {
-  for (const auto& v : {eye, target, up})
-    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
-      return "eye, target and up must be finite";
-  if (eye == target) return "eye and target are one point: the camera looks nowhere";
-  if (up == glm::dvec3(0)) return "up has no direction";
-  if (!(near_z > 0)) return "near must be above 0";
-  if (!(far_z > near_z)) return "far must be beyond near";
+inline CameraFault fault_of_camera(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up,
+                                   double near_z, double far_z) {
+  const auto finite = [](const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  };
+  if (!finite(eye)) return {"eye", "eye must be finite"};
+  if (!finite(target)) return {"target", "target must be finite"};
+  if (!finite(up)) return {"up", "up must be finite"};
+  if (eye == target) return {"target", "eye and target are one point: the camera looks nowhere"};
+  if (up == glm::dvec3(0)) return {"up", "up has no direction"};
+  if (!(near_z > 0)) return {"near", "near must be above 0"};
+  if (!(far_z > near_z)) return {"far", "far must be beyond near"};
   return {};
 }
 

@@ -30,7 +30,8 @@ kernels::Box bounds_of(const Mesh& mesh, const Context& ctx) {
         kernels::Triangles<R>{position->template values<glm::vec<3, R>>(), mesh.triangles()});
   });
   if (box.empty())
-    throw NodeError("no_bounds", "the mesh has no face with a finite corner, so there is nothing to circle");
+    throw NodeError("no_bounds", "the mesh has no face with a finite corner, so there is nothing to circle",
+                    at_input("mesh"));
   return box;
 }
 

@@ -106,9 +106,11 @@ template <class R>
 Ref<Column> world_positions(const Mesh& mesh) {
   const bool own = mesh.find("world") == nullptr && mesh.space() == Space::world;
   if (!own && mesh.find("world") == nullptr)
-    throw NodeError("missing_column", "the mesh has no world positions: it has not passed project.view");
+    throw NodeError("missing_column", "the mesh has no world positions: it has not passed project.view",
+                    at_input("mesh"));
   Ref<Column> c = mesh.real<R>(own ? "position" : "world");
-  if (c->width() != 3) throw NodeError("wrong_column", "world positions have three components");
+  if (c->width() != 3)
+    throw NodeError("wrong_column", "world positions have three components", at_input("mesh"));
   return c;
 }
 
@@ -140,7 +142,8 @@ Scene<R> make_scene(const Inputs& in, const Params& p) {
     const auto of = in.mesh->at("material").values<std::uint32_t>();
     for (const std::uint32_t m : of)
       if (m >= s.surfaces.size())
-        throw NodeError("bad_material", "a face has a material that the mesh does not have");
+        throw NodeError("bad_material", "a face has a material that the mesh does not have",
+                        at_input("mesh"));
     s.surface_of.assign(of.begin(), of.end());
   }
   return s;
@@ -160,7 +163,8 @@ template <class R>
 void light_vertices(Shader<R>& shader, const Mesh& mesh, const Context& ctx) {
   using V3 = glm::vec<3, R>;
   const Ref<Column> world = world_positions<R>(mesh), normals = mesh.real<R>("normal");
-  if (normals->width() != 3) throw NodeError("wrong_column", "normals have three components");
+  if (normals->width() != 3)
+    throw NodeError("wrong_column", "normals have three components", at_input("mesh"));
   const auto position = world->values<V3>(), normal = normals->values<V3>();
   const Scene<R>& s = shader.scene;
   const bool corner_normals = normals->domain() == Domain::corner;
@@ -206,7 +210,7 @@ Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
   if (p.interpolation == Interpolation::gouraud) {
     light_vertices(shader, mesh, ctx);
     if (mesh.space() != Space::screen)
-      throw NodeError("wrong_space", "Gouraud shading needs the mesh in screen space");
+      throw NodeError("wrong_space", "Gouraud shading needs the mesh in screen space", at_input("mesh"));
     shader.screen = mesh.real<R>("position");
   }
   return shader;
@@ -233,7 +237,8 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   if (p.interpolation == Interpolation::phong) {
     if (!from.find("N.x"))
       throw NodeError("missing_normals",
-                      "the points have no normals: give the mesh some, or use interpolation \"flat\"");
+                      "the points have no normals: give the mesh some, or use interpolation \"flat\"",
+                      at_input("points"));
     s.normal = {read_real(in.points, "N.x", ctx.precision), read_real(in.points, "N.y", ctx.precision),
                 read_real(in.points, "N.z", ctx.precision)};
     if (needs_position(s.shader))
@@ -243,7 +248,8 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   if (in.albedo && !in.albedo->frame().white.holds) {
     const Frame& a = in.albedo->frame();
     if (a.window != from.window || a.samples() != from.samples())
-      throw NodeError("different_frames", "albedo and points have different windows or samples");
+      throw NodeError("different_frames", "albedo and points have different windows or samples",
+                      at_input("albedo"));
     s.albedo = {read_real(*in.albedo, "R", ctx.precision), read_real(*in.albedo, "G", ctx.precision),
                 read_real(*in.albedo, "B", ctx.precision)};
   }

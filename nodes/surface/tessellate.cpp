@@ -32,7 +32,7 @@ struct Outputs {
 
 PixelTolerance pixel_tolerance(const Camera& c, double pixels) {
   const auto forward = kernels::normalized(c.target - c.eye);
-  if (!forward) throw NodeError("zero_direction", "the camera looks at its own eye");
+  if (!forward) throw NodeError("zero_direction", "the camera looks at its own eye", at_input("camera"));
   const double t = kernels::tan(0.5 * c.fov_y), aspect = c.aspect();
   return {.eye = c.eye,
           .forward = *forward,
@@ -56,23 +56,31 @@ struct Plan {
   }
 };
 
-void check(const Surface& s) {
+void check(const Params& p) {
+  if (p.min_segments > p.max_segments)
+    throw NodeError(
+        "bad_segments",
+        fmt::format("min_segments is {}, and max_segments only {}", p.min_segments, p.max_segments),
+        at_param("max_segments"));
+}
+
+void check_surface(const Surface& s) {
   for (std::size_t p = 0; p < s.patches.size(); ++p)
     for (const std::uint32_t i : s.patches[p]) {
       if (i >= s.points.size())
         throw NodeError("bad_surface",
-                        fmt::format("patch {} has control point {} of {}", p, i, s.points.size()));
+                        fmt::format("patch {} has control point {} of {}", p, i, s.points.size()),
+                        at_input("surface"));
       const glm::dvec3& q = s.points[i];
       if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(q.z))
-        throw NodeError("not_finite", fmt::format("control point {} of patch {} is not finite", i, p));
+        throw NodeError("not_finite", fmt::format("control point {} of patch {} is not finite", i, p),
+                        at_input("surface"));
     }
 }
 
 Plan make_plan(const Inputs& in, const Params& p, Context& ctx) {
-  if (p.min_segments > p.max_segments)
-    throw NodeError("bad_segments", "min_segments is larger than max_segments");
   const Surface& surface = *in.surface;
-  check(surface);
+  check_surface(surface);
   std::optional<PixelTolerance> pixels;
   if (in.camera) pixels = pixel_tolerance(**in.camera, p.tolerance_px);
 
@@ -108,7 +116,8 @@ struct Numbering {
       const auto first = static_cast<std::uint32_t>(next);
       next += n;
       if (next > 0xFFFFFFFEu)
-        throw NodeError("too_many_vertices", "more than 2^32 vertices: raise the tolerance");
+        throw NodeError("too_many_vertices", "more than 2^32 vertices: raise the tolerance",
+                        at_param("tolerance_px"));
       return first;
     };
     for (const Patch& p : plan.patches)
@@ -246,6 +255,7 @@ NodeType nodes::surface_tessellate() {
              {.range = between(1, 4096)})
       .param("max_segments", &Params::max_segments,
              "Largest number; patches that would need more are reported.", {.range = between(1, 4096)})
+      .check(check)
       .output("mesh", &Outputs::mesh,
               "Triangles with uv and normal at corners (creases stay sharp), and the column patch.");
 }

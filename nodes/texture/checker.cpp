@@ -16,9 +16,13 @@ struct Outputs {
   Ref<Texture> texture;
 };
 
-Outputs run(const Inputs&, const Params& p, Context&) {
+void check(const Params& p) {
   if (!is_checker_scale(p.scale))
-    throw NodeError("bad_scale", "the scale of a checkerboard is a finite positive number");
+    throw NodeError("bad_scale", "the scale of a checkerboard is a finite positive number",
+                    at_param("scale"));
+}
+
+Outputs run(const Inputs&, const Params& p, Context&) {
   return {std::make_shared<Texture>(Texture{Checker{p.scale, p.even.rgb, p.odd.rgb}})};
 }
 
@@ -32,6 +36,7 @@ NodeType nodes::texture_checker() {
              {.unit = "squares", .range = above(0)})
       .param("even", &Params::even, "Colour of the square at (0, 0), linear Rec.709.", {.range = at_least(0)})
       .param("odd", &Params::odd, "Colour of its neighbours, linear Rec.709.", {.range = at_least(0)})
+      .check(check)
       .output("texture", &Outputs::texture, "The checkerboard.");
 }
 

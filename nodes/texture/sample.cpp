@@ -58,9 +58,10 @@ std::vector<kernels::TexelLevel> texel_levels(const Texture& texture) {
   const auto* pyramid = std::get_if<MipPyramid>(&texture.source);
   if (pyramid == nullptr) return levels;
   if (pyramid->levels.empty() || pyramid->levels.size() > 32)
-    throw NodeError("empty_texture", "the texture has no level or too many");
+    throw NodeError("empty_texture", "the texture has no level or too many", at_input("texture"));
   for (const MipPyramid::Level& l : pyramid->levels) {
-    if (l.width < 1 || l.height < 1) throw NodeError("empty_texture", "the texture has no texels");
+    if (l.width < 1 || l.height < 1)
+      throw NodeError("empty_texture", "the texture has no texels", at_input("texture"));
     levels.push_back({l.width, l.height, l.rgba.data()});
   }
   return levels;
@@ -84,7 +85,8 @@ Skin skin_of_material(const Inputs& in, const Material& m, Lookup filter, Precis
     throw NodeError("missing_uv",
                     fmt::format("material \"{}\" has a texture, but the mesh has no texture coordinates "
                                 "for it: column {}",
-                                m.name, uv_column_name(m.uv_set)));
+                                m.name, uv_column_name(m.uv_set)),
+                    at_input("points"));
   Skin s = skin_of_texture(in, m.texture, m.uv_set, filter, precision);
   if (m.texture_from_uv != glm::dmat3(1)) s.texture_from_uv = m.texture_from_uv;
   return s;

@@ -105,13 +105,11 @@ void report_gimbal_lock(const EulerTurn& e, std::size_t index, Context& ctx) {
                   index, "xyz"[axes[1]], e.degrees[axes[1]], "xyz"[axes[0]], "xyz"[axes[2]]));
 }
 
-std::optional<kernels::Affine> map_of(const Step& s, std::size_t index, Context& ctx) {
+// Nothing where the step has no inverse.
+std::optional<kernels::Affine> map_of(const Step& s) {
   if (s.translate) return kernels::translation(*s.translate);
   if (s.rotate) return kernels::rotation(s.rotate->axis, s.rotate->degrees);
-  if (s.euler) {
-    report_gimbal_lock(*s.euler, index, ctx);
-    return kernels::euler_rotation(s.euler->degrees, s.euler->order);
-  }
+  if (s.euler) return kernels::euler_rotation(s.euler->degrees, s.euler->order);
   if (s.quaternion)
     return kernels::quaternion_rotation(s.quaternion->x,
                                         glm::dvec3(s.quaternion->y, s.quaternion->z, s.quaternion->w));
@@ -129,18 +127,25 @@ std::string_view demand_of(const Step& s) {
   return "a matrix needs the last row 0 0 0 1 and an inverse";
 }
 
+void check(const Params& p) {
+  for (std::size_t i = 0; i < p.steps.size(); ++i)
+    if (!map_of(p.steps[i]))
+      throw NodeError("singular_transform", fmt::format("step {}: {}", i, demand_of(p.steps[i])),
+                      at_param(fmt::format("steps/{}", i)));
+}
+
 kernels::Affine composed_map(const Inputs& in, const Params& p, Context& ctx) {
   kernels::Affine all;
   if (in.matrix) {
     const auto map = kernels::affine_from_matrix((*in.matrix)->value);
     if (!map)
-      throw NodeError("singular_transform", "the input matrix needs the last row 0 0 0 1 and an inverse");
+      throw NodeError("singular_transform", "the input matrix needs the last row 0 0 0 1 and an inverse",
+                      at_input("matrix"));
     all = *map;
   }
   for (std::size_t i = 0; i < p.steps.size(); ++i) {
-    const auto map = map_of(p.steps[i], i, ctx);
-    if (!map) throw NodeError("singular_transform", fmt::format("step {}: {}", i, demand_of(p.steps[i])));
-    all = kernels::composed(*map, all);
+    if (p.steps[i].euler) report_gimbal_lock(*p.steps[i].euler, i, ctx);
+    all = kernels::composed(map_of(p.steps[i]).value(), all);
   }
   // 2^-53 / rcond bounds the relative error of going there and back; past 1e-2 the digits are gone.
   if (kernels::rcond(all) < 0x1p-53 / 1e-2)
@@ -235,6 +240,7 @@ NodeType nodes::transform_affine() {
              {.space = {Space::object, Space::world}})
       .input("matrix", &Inputs::matrix, "An affine map made before the steps.")
       .param("steps", &Params::steps, "Elementary maps, each made after the one before it.")
+      .check(check)
       .output("geometry", &Outputs::geometry,
               "The geometry in world space; mirrored faces are turned so that fronts stay fronts.",
               {.space = Space::world})

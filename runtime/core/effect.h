@@ -20,6 +20,8 @@ struct Verdict {
   };
   Kind kind = Kind::on;
   std::string why = {};
+  std::uint64_t items =
+      0;  // how many of the effect's items (EffectCost) it is or would be done for; 0: not known
 };
 constexpr auto choices(Verdict::Kind) {
   using Kind = Verdict::Kind;
@@ -27,15 +29,27 @@ constexpr auto choices(Verdict::Kind) {
                     std::pair{Kind::off_user, "off_user"}, std::pair{Kind::absent, "absent"}};
 }
 
-inline Verdict on(std::string witness) { return {Verdict::Kind::on, std::move(witness)}; }
-inline Verdict off_exact(std::string certificate) { return {Verdict::Kind::off_exact, std::move(certificate)}; }
-inline Verdict off_user(std::string wish) { return {Verdict::Kind::off_user, std::move(wish)}; }
+inline Verdict on(std::string witness, std::uint64_t items = 0) {
+  return {Verdict::Kind::on, std::move(witness), items};
+}
+inline Verdict off_exact(std::string certificate, std::uint64_t items = 0) {
+  return {Verdict::Kind::off_exact, std::move(certificate), items};
+}
+inline Verdict off_user(std::string wish) { return {Verdict::Kind::off_user, std::move(wish), 0}; }
+inline Verdict absent(std::string witness) { return {Verdict::Kind::absent, std::move(witness), 0}; }
+
+// What an effect costs where it is on, from which the plan estimates its time. `ns` was measured, in one thread.
+struct EffectCost {
+  std::string_view item;  // "face", "sample": what Verdict::items counts
+  double ns = 0;          // for one of them
+};
 
 // What is said about an effect where the node type is declared.
 struct EffectDoc {
-  std::string name;  // "clipping"
-  std::string doc;   // one sentence: what is not done where the effect is off
+  std::string name;       // "clipping"
+  std::string doc;        // one sentence: what is not done where the effect is off
   bool shortcut = false;  // not doing it would change the result elsewhere; here it is licensed
+  EffectCost cost = {};   // no item: not measured
 };
 
 // What a run asks of effects beyond what the scene does. Forced: simulated although the scene does not call for

@@ -20,7 +20,9 @@ template <class T>
 struct PortOf<Tiled<T>> {
   static constexpr bool list = false, optional = false, tiled = true;
   static std::vector<const BufferType*> types() { return {&buffer_type<T>()}; }
-  static void set(Tiled<T>& m, std::span<const Buffer>, const TiledInput& in) { m = Tiled<T>(in.frame, in.planes_read); }
+  static void set(Tiled<T>& m, std::span<const Buffer>, const TiledInput& in) {
+    m = Tiled<T>(in.frame, in.planes_read);
+  }
 };
 
 template <class T>
@@ -68,9 +70,10 @@ constexpr std::size_t member_count(A... a) {
 }
 
 template <class S, class M>
-std::size_t offset_in(M S::* member) {
+std::size_t offset_in(M S::*member) {
   static const S probe{};
-  return static_cast<std::size_t>(reinterpret_cast<const char*>(&(probe.*member)) - reinterpret_cast<const char*>(&probe));
+  return static_cast<std::size_t>(reinterpret_cast<const char*>(&(probe.*member)) -
+                                  reinterpret_cast<const char*>(&probe));
 }
 
 template <class S>
@@ -103,12 +106,14 @@ class NodeBuilder {
   NodeBuilder& doc(std::string_view sentence) { return type_.doc = sentence, *this; }
   NodeBuilder& cite(std::string_view source) { return type_.citations.emplace_back(source), *this; }
   template <class... Rows>
-  NodeBuilder& covers(Rows... rows) { return type_.rows = {rows...}, *this; }
+  NodeBuilder& covers(Rows... rows) {
+    return type_.rows = {rows...}, *this;
+  }
   NodeBuilder& version(int n) { return type_.version = n, *this; }
   NodeBuilder& foreign() { return type_.foreign = true, *this; }
 
   template <class M>
-  NodeBuilder& input(std::string_view name, M I::* member, std::string_view doc, PortOptions options = {}) {
+  NodeBuilder& input(std::string_view name, M I::*member, std::string_view doc, PortOptions options = {}) {
     type_.inputs.push_back(port<I>(name, member, doc, options));
     set_.push_back([](I& in, std::size_t at, std::span<const Buffer> from, const TiledInput& tiled) {
       detail::PortOf<M>::set(detail::member_at<M>(in, at), from, tiled);
@@ -116,7 +121,7 @@ class NodeBuilder {
     return *this;
   }
   template <class M>
-  NodeBuilder& param(std::string_view name, M P::* member, std::string_view doc, ParamOptions options = {}) {
+  NodeBuilder& param(std::string_view name, M P::*member, std::string_view doc, ParamOptions options = {}) {
     fields_.field(name, member, doc, options);
     return *this;
   }
@@ -129,33 +134,43 @@ class NodeBuilder {
   NodeBuilder& knob_of_taste(std::initializer_list<std::string_view> order, std::string_view basis) {
     return fields_.knob({{order.begin(), order.end()}, std::string(basis), {}, true}), *this;
   }
+  // Finds what is wrong with the parameters whatever the inputs are, when the graph is loaded and before run() or
+  // prepare(), which need not look again: throws NodeError(code, sentence, at_param(...)).
+  NodeBuilder& check(void (*check)(const P&)) {
+    type_.check = [check](const void* params) { check(*static_cast<const P*>(params)); };
+    return *this;
+  }
   template <class M>
-  NodeBuilder& output(std::string_view name, M O::* member, std::string_view doc, PortOptions options = {}) {
+  NodeBuilder& output(std::string_view name, M O::*member, std::string_view doc, PortOptions options = {}) {
     type_.outputs.push_back(port<O>(name, member, doc, options));
     if constexpr (detail::PortOf<M>::tiled)
       frame_.push_back([](const O& o, std::size_t at) { return detail::member_at<M>(o, at).shared_frame(); });
     else
-      get_.push_back([](const O& o, std::size_t at) { return detail::PortOf<M>::get(detail::member_at<M>(o, at)); });
+      get_.push_back(
+          [](const O& o, std::size_t at) { return detail::PortOf<M>::get(detail::member_at<M>(o, at)); });
     return *this;
   }
   // Work that is not done where `needed` finds that it would change no bit of the result; run() and prepare() ask
   // ctx.simulates(name).
-  NodeBuilder& effect(std::string_view name, Verdict (*needed)(const I&, const P&, const Context&), std::string_view doc) {
-    type_.effects.push_back({std::string(name), std::string(doc)});
+  NodeBuilder& effect(std::string_view name, Verdict (*needed)(const I&, const P&, const Context&),
+                      std::string_view doc, EffectCost cost = {}) {
+    type_.effects.push_back({std::string(name), std::string(doc), false, cost});
     needed_.push_back(needed);
     return *this;
   }
   // Work that is saved where `needed` finds that the final picture does not depend on it.
   NodeBuilder& shortcut(std::string_view name, Verdict (*needed)(const I&, const P&, const Context&),
-                        std::string_view doc) {
-    effect(name, needed, doc);
+                        std::string_view doc, EffectCost cost = {}) {
+    effect(name, needed, doc, cost);
     type_.effects.back().shortcut = true;
     return *this;
   }
   // How far tile() looks beyond the rectangle it fills; without it, not at all.
   template <class State>
   NodeBuilder& reads(Rect (*f)(const State&, std::string_view input, Rect)) {
-    reads_ = [f](const void* state, std::string_view input, Rect r) { return f(*static_cast<const State*>(state), input, r); };
+    reads_ = [f](const void* state, std::string_view input, Rect r) {
+      return f(*static_cast<const State*>(state), input, r);
+    };
     return *this;
   }
 
@@ -180,12 +195,14 @@ class NodeBuilder {
                                                          const TiledInput& tiled) {
       if (!from.empty() || tiled.frame) set[i](in, ports[i].offset, from, tiled);
     };
-    const auto decide = [effects = type_.effects, needed = needed_](const I& in, const P& p, Context& ctx) {
+    const auto decide = [effects = type_.effects, needed = needed_, check = type_.check](
+                            const I& in, const P& p, Context& ctx) {
+      if (check) check(&p);
       for (std::size_t i = 0; i < effects.size(); ++i) ctx.decide(effects[i].name, needed[i](in, p, ctx));
     };
     if (run_ != nullptr) {
-      type_.run = [fill, decide, run = run_, ports = type_.outputs, get = get_](std::span<const std::vector<Buffer>> inputs,
-                                                                        const void* params, Context& ctx) {
+      type_.run = [fill, decide, run = run_, ports = type_.outputs, get = get_](
+                      std::span<const std::vector<Buffer>> inputs, const void* params, Context& ctx) {
         I in{};
         for (std::size_t i = 0; i < inputs.size(); ++i) fill(in, i, inputs[i], {});
         decide(in, *static_cast<const P*>(params), ctx);
@@ -223,10 +240,10 @@ class NodeBuilder {
 
  private:
   template <class S, class M>
-  static Port port(std::string_view name, M S::* member, std::string_view doc, PortOptions options) {
+  static Port port(std::string_view name, M S::*member, std::string_view doc, PortOptions options) {
     using Of = detail::PortOf<M>;
-    return {std::string(name), std::string(doc), Of::types(), Of::list, Of::optional, Of::tiled, options.space,
-            detail::offset_in(member)};
+    return {std::string(name), std::string(doc), Of::types(),   Of::list,
+            Of::optional,      Of::tiled,        options.space, detail::offset_in(member)};
   }
 
   NodeType type_;
@@ -251,7 +268,8 @@ NodeBuilder<I, P, O> node(std::string_view name, O (*run)(const I&, const P&, Co
 
 // A node that fills rectangles of pixels.
 template <class I, class P, class O, class State>
-NodeBuilder<I, P, O> pixel_node(std::string_view name, Prepared<State, O> (*prepare)(const I&, const P&, Context&),
+NodeBuilder<I, P, O> pixel_node(std::string_view name,
+                                Prepared<State, O> (*prepare)(const I&, const P&, Context&),
                                 void (*tile)(const State&, const TilesOf<I>&, const TilesOf<O>&, Arena&)) {
   NodeBuilder<I, P, O> b(name);
   b.pixel(prepare, tile);

@@ -38,7 +38,8 @@
 namespace frustum {
 
 struct PortOptions {
-  Spaces space = {};  // input: the spaces it takes; output: the space it gives (empty: that of the first input of its kind)
+  Spaces space =
+      {};  // input: the spaces it takes; output: the space it gives (empty: that of the first input of its kind)
 };
 
 struct Port {
@@ -58,7 +59,7 @@ struct Port {
 
 // What the runtime hands to an input of a pixel node at preparation: a whole buffer, or the frame that will stream.
 struct TiledInput {
-  std::shared_ptr<const Frame> frame;             // null: the input is whole or left out
+  std::shared_ptr<const Frame> frame;              // null: the input is whole or left out
   std::shared_ptr<std::vector<bool>> planes_read;  // set by Tiled<T>::read()
 };
 struct PreparedInput {
@@ -77,18 +78,22 @@ class NodeType {
   // ----- what it is
   std::string name, doc;
   std::vector<std::string> citations;
-  std::vector<int> rows;  // of the course's checklist
-  int version = 1;        // in the cache key: raised when the same inputs give other bytes
-  bool foreign = false;   // a library computes its numbers: same bytes on one processor only
+  std::vector<int> rows;           // of the course's checklist
+  int version = 1;                 // in the cache key: raised when the same inputs give other bytes
+  bool foreign = false;            // a library computes its numbers: same bytes on one processor only
   std::vector<EffectDoc> effects;  // decided in this order, before run() or prepare()
   std::vector<Port> inputs, outputs;
   ParamType params{.kind = ParamType::Kind::record, .name = "an object"};
 
   // ----- what it does
   std::function<std::shared_ptr<void>()> default_params;
+  // Throws NodeError for parameters that are wrong whatever the inputs are; empty: each is right by itself.
+  std::function<void(const void* params)> check;
 
   bool is_pixel() const { return static_cast<bool>(tile); }
-  std::function<std::vector<Buffer>(std::span<const std::vector<Buffer>> inputs, const void* params, Context&)> run;
+  std::function<std::vector<Buffer>(std::span<const std::vector<Buffer>> inputs, const void* params,
+                                    Context&)>
+      run;
 
   std::function<PreparedNode(std::span<const PreparedInput> inputs, const void* params, Context&)> prepare;
   std::function<void(const void* state, std::span<const Tile> in, std::span<const Tile> out, Arena&)> tile;
@@ -96,7 +101,8 @@ class NodeType {
   std::function<Rect(const void* state, std::size_t input, Rect rect)> reads;
 
   // ----- checks of the declaration itself
-  std::size_t input_members = 0, output_members = 0, param_members = 0;  // of the structs: all must be described
+  std::size_t input_members = 0, output_members = 0,
+              param_members = 0;  // of the structs: all must be described
 
   std::optional<std::size_t> find_input(std::string_view port) const;
   std::optional<std::size_t> find_output(std::string_view port) const;

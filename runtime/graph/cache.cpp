@@ -11,7 +11,7 @@ std::optional<CacheEntry> MemoryCache::find(const Digest& key) {
 }
 
 void MemoryCache::insert(const Digest& key, CacheEntry entry) {
-  std::uint64_t bytes = 0;
+  std::uint64_t bytes = entry.prepared_bytes;
   for (const Buffer& b : entry.buffers) bytes += b.bytes();
   if (bytes > limit_) return;
   const std::lock_guard lock(mutex_);

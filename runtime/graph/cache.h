@@ -16,7 +16,8 @@ namespace frustum {
 // One node's published results: the buffers of its outputs, or a prepared pixel node.
 struct CacheEntry {
   std::vector<Buffer> buffers;
-  std::shared_ptr<const void> prepared;  // a PreparedNode; its bytes are not known
+  std::shared_ptr<const void> prepared = {};  // a PreparedNode
+  std::uint64_t prepared_bytes = 0;           // what it holds besides buffers
 };
 
 // In memory, least recently used first out. Thread-safe.

@@ -68,12 +68,23 @@ struct LeftOut {
   std::size_t input = 0;            // of the graph's document
 };
 
+// The parameters of a node, and where those stand that are not left to their defaults.
+struct FlatParams {
+  struct Place {
+    std::string name;
+    const SourceText* text;
+    std::string pointer;
+  };
+  std::shared_ptr<void> values;
+  std::vector<Place> places;
+};
+
 struct FlatNode {
   const DocumentNode* node = nullptr;
   const Instance* instance = nullptr;
   std::string id;
   Precision precision = Precision::single;
-  std::shared_ptr<void> params;
+  FlatParams params;
   std::vector<std::vector<Edge>> inputs;  // one list an input of the type
   LeftOut left_out = {};                  // it does not run
 
@@ -99,8 +110,8 @@ std::optional<Json> substitute(const Json& value, const Instance& scope, const G
 // Adds to the graph's parameters and overrides what stands outside of the file. Unknown addresses are reported.
 void apply_settings(Instance& top, const LoadOptions&, Diagnostics&);
 
-// The parameters of a node: defaults, then what is written, then what overrides it.
-std::shared_ptr<void> read_params(const DocumentNode&, const Instance&, const LoadOptions&, Diagnostics&);
+// The parameters of a node: defaults, then what is written, then what overrides it; and whether they fit together.
+FlatParams read_params(const DocumentNode&, const Instance&, const LoadOptions&, Diagnostics&);
 
 // A literal read as a buffer of `kind`; empty, and reported, where that fails.
 Buffer read_literal(const Edge&, const BufferType& kind, const LoadOptions&, Diagnostics&);

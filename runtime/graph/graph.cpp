@@ -4,6 +4,16 @@
 
 namespace frustum {
 
+SourcePlace GraphNode::place_of(std::string_view part) const {
+  for (const auto& [name, at] : parts) {
+    if (!part.starts_with(name) || (part.size() > name.size() && part[name.size()] != '/')) continue;
+    SourcePlace found = at;
+    found.pointer += part.substr(name.size());
+    return found;
+  }
+  return place;
+}
+
 std::optional<PortRef> Graph::find_port(std::string_view address) const {
   const auto named =
       std::find_if(port_names.begin(), port_names.end(), [&](const auto& n) { return n.name == address; });

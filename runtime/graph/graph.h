@@ -30,12 +30,17 @@ struct SourcePlace {
 };
 
 struct GraphNode {
-  std::string id;                            // "cut", or "draw/lit" inside the graph-as-node "draw"
+  std::string id;  // "cut", or "draw/lit" inside the graph-as-node "draw"
   const NodeType* type = nullptr;
-  std::shared_ptr<const void> params;        // the type's Params, with every override resolved
-  std::vector<std::vector<Source>> inputs;   // one list an input of the type; empty where left out
+  std::shared_ptr<const void> params;       // the type's Params, with every override resolved
+  std::vector<std::vector<Source>> inputs;  // one list an input of the type; empty where left out
   Precision precision = Precision::single;
   SourcePlace place;
+  std::vector<std::pair<std::string, SourcePlace>>
+      parts;  // of written parameters and inputs: "/params/far", "/in/mesh"
+
+  // Where a part of the node stands, or what holds it, or the node: NodeError::part.
+  SourcePlace place_of(std::string_view part) const;
 };
 
 struct OutputLayer {
@@ -62,10 +67,10 @@ struct PortName {
 
 struct Graph {
   std::string title;
-  std::string file;                   // empty for a graph that was not read from a file
+  std::string file;  // empty for a graph that was not read from a file
   std::uint64_t seed = 0;
-  std::vector<GraphNode> nodes;       // every node stands after those that feed it
-  std::vector<GraphOutput> outputs;   // in the order of the file
+  std::vector<GraphNode> nodes;      // every node stands after those that feed it
+  std::vector<GraphOutput> outputs;  // in the order of the file
   std::vector<PortName> port_names;
 
   const Port& port(PortRef p) const { return nodes[p.node].type->outputs[p.port]; }

@@ -49,12 +49,21 @@ Digest processor() {
   return digest;
 }
 
-NodeKey node_key(const Graph& graph, const GraphNode& node, const std::vector<NodeKey>& keys, bool this_machine) {
+// Those of a type's effects of which something is asked; nothing where nothing is.
+void hash_effects(const NodeType& type, const EffectPolicy& policy, Hasher& h) {
+  for (const EffectDoc& e : type.effects)
+    if (policy.forces(e.name) || policy.skips(e.name)) h.text(e.name).value(policy.forces(e.name));
+}
+
+NodeKey node_key(const Graph& graph, const GraphNode& node, const std::vector<NodeKey>& keys,
+                 bool this_machine, const EffectPolicy& effects) {
   const NodeType& type = *node.type;
   NodeKey k;
   k.type = Hasher().text(type.name).value(type.version).done();
-  k.how =
-      Hasher().value(node.precision).value(graph.seed).value(type.foreign && this_machine ? processor() : Digest{}).done();
+  Hasher how;
+  how.value(node.precision).value(graph.seed).value(type.foreign && this_machine ? processor() : Digest{});
+  hash_effects(type, effects, how);
+  k.how = how.done();
   Hasher files;
   if (this_machine && type.params.files)
     type.params.files(node.params.get(), [&](const FilePath& f) { hash_file(f.resolved, files); });
@@ -84,26 +93,28 @@ NodeKey node_key(const Graph& graph, const GraphNode& node, const std::vector<No
 }
 
 // Without `this_machine`, the content of files and the processor are left out.
-std::vector<NodeKey> explained_keys(const Graph& graph, bool this_machine) {
+std::vector<NodeKey> explained_keys(const Graph& graph, bool this_machine, const EffectPolicy& effects) {
   std::vector<NodeKey> keys;
   keys.reserve(graph.nodes.size());
-  for (const GraphNode& n : graph.nodes) keys.push_back(node_key(graph, n, keys, this_machine));
+  for (const GraphNode& n : graph.nodes) keys.push_back(node_key(graph, n, keys, this_machine, effects));
   return keys;
 }
 
 }  // namespace
 
-std::vector<NodeKey> explained_keys(const Graph& graph) { return explained_keys(graph, true); }
+std::vector<NodeKey> explained_keys(const Graph& graph, const EffectPolicy& effects) {
+  return explained_keys(graph, true, effects);
+}
 
-std::vector<Digest> node_keys(const Graph& graph) {
+std::vector<Digest> node_keys(const Graph& graph, const EffectPolicy& effects) {
   std::vector<Digest> keys;
-  for (NodeKey& k : explained_keys(graph)) keys.push_back(k.key);
+  for (NodeKey& k : explained_keys(graph, effects)) keys.push_back(k.key);
   return keys;
 }
 
 Digest graph_digest(const Graph& graph) {
   Hasher h;
-  for (const NodeKey& k : explained_keys(graph, false)) h.value(k.key);
+  for (const NodeKey& k : explained_keys(graph, false, {})) h.value(k.key);
   return h.done();
 }
 

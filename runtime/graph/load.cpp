@@ -50,14 +50,21 @@ class Builder {
     FlatNode& flat = flat_.nodes[i];
     GraphNode node{.id = flat.id,
                    .type = flat.node->type,
-                   .params = flat.params,
+                   .params = flat.params.values,
                    .inputs = std::vector<std::vector<Source>>(flat.inputs.size()),
                    .precision = flat.precision,
-                   .place = place_of(*flat.instance->document->text, flat.node->pointer)};
-    for (std::size_t p = 0; p < flat.inputs.size(); ++p)
+                   .place = place_of(*flat.instance->document->text, flat.node->pointer),
+                   .parts = {}};
+    for (const FlatParams::Place& p : flat.params.places)
+      node.parts.emplace_back(at_param(p.name), place_of(*p.text, p.pointer));
+    for (std::size_t p = 0; p < flat.inputs.size(); ++p) {
+      const std::string part = at_input(flat.type().inputs[p].name);
+      if (!flat.inputs[p].empty())
+        node.parts.emplace_back(part, place_of(*flat.instance->document->text, flat.node->pointer + part));
       for (const Edge& edge : flat.inputs[p])
         if (auto source = source_of(edge, flat.type().inputs[p]))
           node.inputs[p].push_back(std::move(*source));
+    }
     index_[i] = graph_.nodes.size();
     graph_.nodes.push_back(std::move(node));
   }
@@ -116,17 +123,17 @@ class Builder {
   }
 
   void check_kind(const DocumentOutput& output, const Edge& edge, const BufferType& kind) {
-    const std::vector<std::string> forms = options_.saved_as ? options_.saved_as(kind) : std::vector<std::string>();
-    const bool saved =
-        std::find(forms.begin(), forms.end(), extension_of(output.file)) != forms.end();
+    const std::vector<std::string> forms =
+        options_.saved_as ? options_.saved_as(kind) : std::vector<std::string>();
+    const bool saved = std::find(forms.begin(), forms.end(), extension_of(output.file)) != forms.end();
     if (output.whole ? saved : kind.is_pixels()) return;
     report(problems_, *doc_.text,
            {.code = "wrong_type",
             .pointer = edge.link->pointer,
-            .message = fmt::format("{} ({}) cannot be written to '{}': {}", name_of(flat_, edge), kind.name,
-                                   output.file,
-                                   output.whole ? "such a file holds another kind of buffer" : "pictures hold pixels"),
-            .expected = output.whole     ? fmt::format("a file for a {}: {}", kind.name, fmt::join(forms, ", "))
+            .message = fmt::format(
+                "{} ({}) cannot be written to '{}': {}", name_of(flat_, edge), kind.name, output.file,
+                output.whole ? "such a file holds another kind of buffer" : "pictures hold pixels"),
+            .expected = output.whole ? fmt::format("a file for a {}: {}", kind.name, fmt::join(forms, ", "))
                         : forms.empty() ? "a port of pixels"
                                         : fmt::format("a port of pixels, or a file for a {}: {}", kind.name,
                                                       fmt::join(forms, ", ")),

@@ -123,7 +123,10 @@ struct FoundValue {
   std::shared_ptr<const Json> value;
   const GivenValue* giver = nullptr;  // null: written at the node
   bool overridden = false;
-  bool whole = false;  // all of it comes from the giver
+  bool whole = false;    // all of it comes from the giver
+  bool missing = false;  // a "$name" stands for nothing
+
+  bool elsewhere() const { return overridden && giver->text != nullptr; }
 };
 
 FoundValue find_value(const DocumentNode& node, const std::string& name, const Instance& instance) {
@@ -140,42 +143,91 @@ FoundValue find_value(const DocumentNode& node, const std::string& name, const I
                  written->value};  // not owned: the document outlives the reading
   } else if (auto value = substitute(*written->value, instance, &out.giver)) {
     out.value = std::make_shared<const Json>(std::move(*value));
+  } else {
+    out.missing = true;
   }
   out.whole = out.giver != nullptr && written->value->is_string();
   return out;
 }
 
-// Reads one parameter. Its problems stand where the value is written: at the node, or at what overrides it.
-void read_param(const DocumentNode& node, const ParamField& field, const FoundValue& found,
-                const Instance& instance, const LoadOptions& options, void* params, Diagnostics& problems) {
-  const GivenValue* giver = found.giver;
-  const bool elsewhere = found.overridden && giver->text != nullptr;
-  const std::string pointer =
-      elsewhere ? giver->pointer : child_pointer(child_pointer(node.pointer, "params"), field.name);
-  // A path is relative to the file that wrote it; one inside a larger value is taken with that value.
-  Diagnostics read;
-  ParamReader reader(read, pointer, found.whole ? giver->folder : instance.document->folder,
-                     options.to_linear);
-  field.type->read(*found.value, static_cast<char*>(params) + field.offset, field.options, reader);
-  for (Diagnostic& d : read.list()) {
-    if (elsewhere) {
-      report(problems, *giver->text, std::move(d));
-      continue;
+// Reads the parameters of one node. What is wrong stands where the value is written: at the node, or at what overrides it.
+class NodeParams {
+ public:
+  NodeParams(const DocumentNode& node, const Instance& instance, const LoadOptions& options,
+             Diagnostics& problems)
+      : node_(node), instance_(instance), options_(options), problems_(problems) {}
+
+  FlatParams read() {
+    FlatParams out{.values = node_.type->default_params(), .places = {}};
+    for (const ParamField& field : node_.type->params.fields) {
+      const FoundValue found = find_value(node_, field.name, instance_);
+      if (found.missing) whole_ = false;
+      if (!found.value) continue;
+      read_one(field, found, out.values.get());
+      out.places.push_back(place(field.name, found));
     }
-    if (giver != nullptr) add_giver(d, *giver, instance);
-    report_inside(problems, instance, std::move(d));
+    if (whole_ && node_.type->check) check(out.values.get());
+    return out;
   }
-}
+
+ private:
+  std::string pointer_to(std::string_view name, const FoundValue& found) const {
+    return found.elsewhere() ? found.giver->pointer
+                             : child_pointer(child_pointer(node_.pointer, "params"), name);
+  }
+
+  FlatParams::Place place(const std::string& name, const FoundValue& found) const {
+    return {name, found.elsewhere() ? found.giver->text : instance_.document->text.get(),
+            pointer_to(name, found)};
+  }
+
+  // A path is relative to the file that wrote it; one inside a larger value is taken with that value.
+  void read_one(const ParamField& field, const FoundValue& found, void* params) {
+    Diagnostics read;
+    ParamReader reader(read, pointer_to(field.name, found),
+                       found.whole ? found.giver->folder : instance_.document->folder, options_.to_linear);
+    field.type->read(*found.value, static_cast<char*>(params) + field.offset, field.options, reader);
+    for (Diagnostic& d : read.list()) add(std::move(d), found);
+  }
+
+  void add(Diagnostic d, const FoundValue& found) {
+    whole_ = false;
+    if (found.elsewhere()) return report(problems_, *found.giver->text, std::move(d));
+    if (found.giver != nullptr) add_giver(d, *found.giver, instance_);
+    report_inside(problems_, instance_, std::move(d));
+  }
+
+  // What a node type says of values that are right one by one.
+  void check(const void* params) {
+    try {
+      node_.type->check(params);
+    } catch (const NodeError& e) {
+      const std::string_view part = e.part, above = "/params/";
+      Diagnostic d{.code = e.code, .pointer = node_.pointer, .message = e.what()};
+      FoundValue found;
+      if (part.starts_with(above)) {
+        const std::string_view path = part.substr(above.size());
+        const std::string_view name = path.substr(0, path.find('/'));
+        found = find_value(node_, std::string(name), instance_);
+        d.pointer =
+            found.value ? pointer_to(name, found) + std::string(path.substr(name.size())) : node_.pointer;
+      }
+      add(std::move(d), found);
+    }
+  }
+
+  const DocumentNode& node_;
+  const Instance& instance_;
+  const LoadOptions& options_;
+  Diagnostics& problems_;
+  bool whole_ = true;  // every value was read
+};
 
 }  // namespace
 
-std::shared_ptr<void> read_params(const DocumentNode& node, const Instance& instance,
-                                  const LoadOptions& options, Diagnostics& problems) {
-  std::shared_ptr<void> params = node.type->default_params();
-  for (const ParamField& field : node.type->params.fields)
-    if (const FoundValue found = find_value(node, field.name, instance); found.value)
-      read_param(node, field, found, instance, options, params.get(), problems);
-  return params;
+FlatParams read_params(const DocumentNode& node, const Instance& instance, const LoadOptions& options,
+                       Diagnostics& problems) {
+  return NodeParams(node, instance, options, problems).read();
 }
 
 Buffer read_literal(const Edge& edge, const BufferType& kind, const LoadOptions& options,

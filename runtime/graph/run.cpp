@@ -27,7 +27,9 @@ class Runner {
   RunResult run() {
     state_.caches.look_up([this](PortRef p, const Buffer& b) { return take_found(p, b); });
     state_.plan = make_plan(state_.graph, state_.options.demand,
-                            {.fuse = state_.options.fuse, .cropped = state_.options.region.has_value(), .given = [this](PortRef p) { return static_cast<bool>(state_.buffer(p)); }});
+                            {.fuse = state_.options.fuse,
+                             .cropped = state_.options.region.has_value(),
+                             .given = [this](PortRef p) { return static_cast<bool>(state_.buffer(p)); }});
     wanted_.resize(state_.graph.nodes.size());
     for (const PlannedNode& n : state_.plan.nodes) wanted_[n.node] = n.wanted_outputs;
     announce_uses();
@@ -108,7 +110,8 @@ class Runner {
       if (waiting_[i] == 0) ready.push_back(i);
     }
     tbb::task_group group;
-    for (std::size_t i = 1; i < ready.size(); ++i) group.run([this, &group, s = ready[i]] { run_chain(s, group); });
+    for (std::size_t i = 1; i < ready.size(); ++i)
+      group.run([this, &group, s = ready[i]] { run_chain(s, group); });
     if (!ready.empty()) run_chain(ready.front(), group);
     group.wait();
   }
@@ -118,13 +121,17 @@ class Runner {
     constexpr auto none = static_cast<std::size_t>(-1);
     while (step != none && !stopped_) {
       const Step& s = state_.plan.steps[step];
-      run_guarded(s);
+      const bool waits_for_pixels = state_.options.only_facts && s.kind == Step::Kind::pass;
+      if (!waits_for_pixels) run_guarded(s);
       end_uses(s);
+      if (waits_for_pixels) return;  // nor do its followers run
       std::size_t next = none;
       for (const std::size_t f : s.followers) {
         if (waiting_[f].fetch_sub(1) != 1) continue;
-        if (next == none) next = f;
-        else group.run([this, &group, f] { run_chain(f, group); });
+        if (next == none)
+          next = f;
+        else
+          group.run([this, &group, f] { run_chain(f, group); });
       }
       step = next;
     }
@@ -133,13 +140,16 @@ class Runner {
   void run_guarded(const Step& s) {
     try {
       if (state_.options.cancel != nullptr && state_.options.cancel->cancelled()) throw Cancelled();
-      if (s.kind == Step::Kind::pass) run_pass(state_, s.index);
-      else if (state_.graph.nodes[s.index].type->is_pixel()) prepare_node(s.index);
-      else run_node(s.index);
+      if (s.kind == Step::Kind::pass)
+        run_pass(state_, s.index);
+      else if (state_.graph.nodes[s.index].type->is_pixel())
+        prepare_node(s.index);
+      else
+        run_node(s.index);
     } catch (const Cancelled&) {
       stop(End::cancelled);
     } catch (const NodeError& e) {
-      fail(s, End::failed, e.code, e.what());
+      fail(s, End::failed, e.code, e.what(), e.part);
     } catch (const WorldError& e) {
       fail(s, End::world_failed, e.code, e.what());
     } catch (const std::bad_alloc&) {
@@ -157,9 +167,15 @@ class Runner {
     stopped_ = true;
   }
 
-  void fail(const Step& s, End end, const std::string& code, const std::string& message) {
-    const SourcePlace& place = place_of(s);
-    state_.problem({.code = code, .pointer = place.pointer, .message = message, .file = place.file, .line = place.line,
+  void fail(const Step& s, End end, const std::string& code, const std::string& message,
+            const std::string& part = {}) {
+    const SourcePlace place =
+        s.kind == Step::Kind::node ? state_.graph.nodes[s.index].place_of(part) : place_of(s);
+    state_.problem({.code = code,
+                    .pointer = place.pointer,
+                    .message = message,
+                    .file = place.file,
+                    .line = place.line,
                     .column = place.column},
                    s.kind == Step::Kind::node ? s.index : state_.graph.nodes.size());
     stop(end);
@@ -180,6 +196,8 @@ class Runner {
     ctx.seed = state_.graph.seed;
     ctx.cancel = state_.options.cancel;
     ctx.wanted_outputs = wanted_[node];
+    ctx.effects = &state_.options.effects;
+    ctx.admit = [this](std::uint64_t claimed) { state_.check_memory(claimed); };
     return ctx;
   }
 
@@ -228,8 +246,10 @@ class Runner {
     Context ctx = context(n);
     const auto found = state_.caches.find_prepared(n, ctx.wanted_outputs);
     auto ready = found ? std::static_pointer_cast<const ReadyNode>(found) : prepare(n, ctx);
-    if (found) replay(n);
-    else state_.caches.keep_prepared(n, ctx.wanted_outputs, ready);
+    if (found)
+      replay(n);
+    else
+      state_.caches.keep_prepared(n, ctx.wanted_outputs, ready, ready->bytes);
     state_.set_ready(n, std::move(ready));
     report(n, ctx, WorkDone::Kind::prepare, start, 0, found ? CacheVerdict::hit : CacheVerdict::miss);
   }
@@ -239,11 +259,13 @@ class Runner {
     std::vector<PreparedInput> inputs(node.inputs.size());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       for (const Source& s : node.inputs[i]) inputs[i].buffers.push_back(value(s));
-      if (node.type->inputs[i].tiled && !inputs[i].buffers.empty()) inputs[i] = streaming(node.inputs[i].front());
+      if (node.type->inputs[i].tiled && !inputs[i].buffers.empty())
+        inputs[i] = streaming(node.inputs[i].front());
     }
     auto ready = std::make_shared<ReadyNode>();
     const FloatEnvironment environment;
     ready->node = node.type->prepare(inputs, node.params.get(), ctx);
+    ready->bytes = ctx.claimed();
     for (const PreparedInput& in : inputs)
       ready->planes_read.push_back(in.tiled.planes_read ? *in.tiled.planes_read : std::vector<bool>());
     return ready;
@@ -263,18 +285,25 @@ class Runner {
     return in;
   }
 
-  void report(std::size_t n, const Context& ctx, WorkDone::Kind kind, std::chrono::nanoseconds start, std::uint64_t bytes,
-              CacheVerdict verdict = CacheVerdict::miss) {
+  void report(std::size_t n, const Context& ctx, WorkDone::Kind kind, std::chrono::nanoseconds start,
+              std::uint64_t bytes, CacheVerdict verdict = CacheVerdict::miss) {
     const GraphNode& node = state_.graph.nodes[n];
     for (const auto& [code, message] : ctx.warnings()) {
       state_.caches.said(n, code, message);
       state_.warning(n, code, message);
     }
+    state_.decided(n, ctx.verdicts());
     const auto time = state_.now() - start;
     state_.caches.ran(n, time);
     state_.observe([&](Observer& o) {
-      o.done({kind, {node.id}, start, time, bytes, state_.caches.any() ? verdict : CacheVerdict::off,
-              std::max(0, tbb::this_task_arena::current_thread_index()), ctx.counters()});
+      o.done({kind,
+              {node.id},
+              start,
+              time,
+              bytes,
+              state_.caches.any() ? verdict : CacheVerdict::off,
+              std::max(0, tbb::this_task_arena::current_thread_index()),
+              ctx.counters()});
     });
   }
 
@@ -289,7 +318,8 @@ class Runner {
     for (const NodeCaching& c : r.caching) state_.observe([&](Observer& o) { o.cached(c); });
     state_.take_results(r);
     if (r.end == End::done)
-      for (const std::size_t o : state_.options.demand.outputs) r.files.push_back(output_path(state_.graph.outputs[o], state_.options));
+      for (const std::size_t o : state_.options.demand.outputs)
+        r.files.push_back(output_path(state_.graph.outputs[o], state_.options));
     return r;
   }
 
@@ -323,7 +353,8 @@ std::string output_path(const GraphOutput& output, const RunOptions& options) {
 RunResult run_graph(const Graph& graph, const RunOptions& options) {
   const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
   // More threads than processors are allowed: results do not depend on it, and tests show that.
-  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads);
   return arena.execute([&] { return Runner(graph, options).run(); });
 }

@@ -15,20 +15,23 @@ namespace frustum {
 
 struct RunOptions {
   Demand demand = {};
-  std::optional<Rect> region = {};         // of every pixel root; same bytes as that part of the whole
+  std::optional<Rect> region = {};  // of every pixel root; same bytes as that part of the whole
   std::string out_folder = "out";
-  MakeSink make_sink = {};                 // required where demand.outputs has pictures
-  SaveBuffer save_buffer = {};             // required where it has other files
-  int threads = 0;                         // 0: all processors
-  int tile_edge = 0;                       // 0: chosen so that live planes stay within 1 MB; -1: one tile, the whole frame
+  MakeSink make_sink = {};      // required where demand.outputs has pictures
+  SaveBuffer save_buffer = {};  // required where it has other files
+  int threads = 0;              // 0: all processors
+  int tile_edge = 0;  // 0: chosen so that live planes stay within 1 MB; -1: one tile, the whole frame
   bool fuse = true;
-  std::uint64_t memory = 0;                // bytes of buffers that may be live at once; 0: no limit
+  std::uint64_t memory = 0;  // bytes of buffers that may be live at once; 0: no limit
   const CancelFlag* cancel = nullptr;
   Observer* observer = nullptr;
-  MemoryCache* cache = nullptr;            // null: nothing is kept in memory
-  DiskCache* disk = nullptr;               // null: nothing is kept on disk
-  bool check_cache = false;                // nothing is taken from disk; what is there is compared with what is computed
-  std::optional<int> frame = {};           // replaces {frame} in output names
+  MemoryCache* cache = nullptr;  // null: nothing is kept in memory
+  DiskCache* disk = nullptr;     // null: nothing is kept on disk
+  bool check_cache = false;  // nothing is taken from disk; what is there is compared with what is computed
+  std::optional<int> frame = {};  // replaces {frame} in output names
+  EffectPolicy effects =
+      {};                   // which are simulated whether the scene calls for them or not; in the cache keys
+  bool only_facts = false;  // geometry runs and pixel nodes are prepared; no pixel is filled, no file written
 };
 
 struct Culprit {
@@ -38,14 +41,21 @@ struct Culprit {
   Health health;
 };
 
+// What a node decided about one of its effects.
+struct NodeVerdict {
+  std::string node, effect;
+  Verdict verdict;
+};
+
 struct RunResult {
-  std::map<PortRef, Buffer> buffers;       // of demand.ports: all at the end `done`, else those that were made
-  std::vector<std::string> files;          // written, in order of the outputs
-  Diagnostics problems;                    // runtime errors and warnings, each at its node's place
+  std::map<PortRef, Buffer> buffers;  // of demand.ports: all at the end `done`, else those that were made
+  std::vector<std::string> files;     // written, in order of the outputs
+  Diagnostics problems;               // runtime errors and warnings, each at its node's place
   std::optional<Culprit> culprit;
-  std::uint64_t peak_bytes = 0;            // of live buffers
-  std::vector<NodeCaching> caching;        // one a node that was looked at; empty without a cache
-  bool cache_differs = false;              // options.check_cache: some buffer on disk was not what the node makes
+  std::uint64_t peak_bytes = 0;       // of live buffers
+  std::vector<NodeVerdict> verdicts;  // of the nodes that ran, in the graph's order
+  std::vector<NodeCaching> caching;   // one a node that was looked at; empty without a cache
+  bool cache_differs = false;         // options.check_cache: some buffer on disk was not what the node makes
   enum class End { done, failed, world_failed, cancelled } end = End::done;
 };
 

@@ -63,7 +63,7 @@ NodeNotes notes_of(const std::string& text, const std::string& node) {
 RunCache::RunCache(const Graph& graph, const RunOptions& options)
     : graph_(graph), options_(options), disk_(options.disk) {
   if (!any()) return;
-  keys_ = explained_keys(graph);
+  keys_ = explained_keys(graph, options.effects);
   if (disk_ != nullptr) index_.emplace(*disk_, graph);
   cost_ms_.resize(graph.nodes.size());
   caching_.resize(graph.nodes.size());
@@ -151,10 +151,10 @@ std::shared_ptr<const void> RunCache::find_prepared(std::size_t node, std::uint6
   return found ? found->prepared : nullptr;
 }
 
-void RunCache::keep_prepared(std::size_t node, std::uint64_t wanted,
-                             std::shared_ptr<const void> prepared) const {
+void RunCache::keep_prepared(std::size_t node, std::uint64_t wanted, std::shared_ptr<const void> prepared,
+                             std::uint64_t bytes) const {
   if (options_.cache != nullptr)
-    options_.cache->insert(prepared_key(keys_[node], wanted), {{}, std::move(prepared)});
+    options_.cache->insert(prepared_key(keys_[node], wanted), {{}, std::move(prepared), bytes});
 }
 
 // ----- while running

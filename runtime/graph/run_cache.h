@@ -38,8 +38,8 @@ class RunCache {
 
   // Prepared pixel nodes are kept in memory only.
   std::shared_ptr<const void> find_prepared(std::size_t node, std::uint64_t wanted_outputs) const;
-  void keep_prepared(std::size_t node, std::uint64_t wanted_outputs,
-                     std::shared_ptr<const void> prepared) const;
+  void keep_prepared(std::size_t node, std::uint64_t wanted_outputs, std::shared_ptr<const void> prepared,
+                     std::uint64_t bytes) const;
 
   // ----- while running: from the thread that ran the node; readers of its buffers come after
   void ran(std::size_t node, std::chrono::nanoseconds time);

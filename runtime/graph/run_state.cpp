@@ -1,5 +1,6 @@
 #include "runtime/graph/run_state.h"
 
+#include "runtime/core/text.h"
 #include "runtime/core/version.h"
 #include "runtime/graph/keys.h"
 
@@ -69,7 +70,9 @@ void RunState::end_use(PortRef p) {
 }
 
 void RunState::end_ready_use(std::size_t node) {
-  if (ready_uses_[node].fetch_sub(1) == 1) ready_[node].reset();
+  if (ready_uses_[node].fetch_sub(1) != 1 || !ready_[node]) return;
+  ledger.remove_bytes(ready_[node]->bytes);
+  ready_[node].reset();
 }
 
 void RunState::problem(Diagnostic d, std::size_t order) {
@@ -79,8 +82,13 @@ void RunState::problem(Diagnostic d, std::size_t order) {
 
 void RunState::warning(std::size_t node, const std::string& code, const std::string& message) {
   const GraphNode& n = graph.nodes[node];
-  problem({.code = code, .severity = Severity::warning, .pointer = n.place.pointer, .message = message, .file = n.place.file,
-           .line = n.place.line, .column = n.place.column},
+  problem({.code = code,
+           .severity = Severity::warning,
+           .pointer = n.place.pointer,
+           .message = message,
+           .file = n.place.file,
+           .line = n.place.line,
+           .column = n.place.column},
           node);
   observe([&](Observer& listener) { listener.warned(n.id, code, message); });
 }
@@ -88,6 +96,12 @@ void RunState::warning(std::size_t node, const std::string& code, const std::str
 void RunState::culprit(Culprit c, std::size_t order) {
   const std::lock_guard lock(mutex_);
   culprits_.emplace_back(order, std::move(c));
+}
+
+void RunState::decided(std::size_t node, const std::vector<std::pair<std::string, Verdict>>& verdicts) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [effect, verdict] : verdicts)
+    verdicts_.push_back({node, {graph.nodes[node].id, effect, verdict}});
 }
 
 std::vector<std::pair<std::string, std::string>> RunState::metadata() const {
@@ -101,9 +115,9 @@ void RunState::check_memory(std::uint64_t further) const {
   if (options.memory == 0) return;
   const std::uint64_t live = ledger.live();
   if (live + further <= options.memory) return;
-  const auto mib = [](std::uint64_t bytes) { return static_cast<double>(bytes) / (1 << 20); };
-  throw NodeError("memory", fmt::format("{:.1f} MiB are live and {:.1f} MiB more are needed, above the limit of {:.1f} MiB",
-                                        mib(live), mib(further), mib(options.memory)));
+  throw NodeError("memory",
+                  fmt::format("{} are live and {} more are needed, above the limit of {}", human_bytes(live),
+                              human_bytes(further), human_bytes(options.memory)));
 }
 
 void RunState::take_results(RunResult& result) {
@@ -120,6 +134,8 @@ void RunState::take_results(RunResult& result) {
   for (const PortRef p : options.demand.ports)
     if (Buffer b = parts_.contains(p) ? parts_[p] : cut_to_region(buffer(p), options.region))
       result.buffers[p] = std::move(b);
+  std::stable_sort(verdicts_.begin(), verdicts_.end(), earlier);
+  for (auto& [order, v] : verdicts_) result.verdicts.push_back(std::move(v));
   result.peak_bytes = ledger.peak();
 }
 

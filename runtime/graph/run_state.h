@@ -15,6 +15,7 @@ namespace frustum {
 struct ReadyNode {
   PreparedNode node;
   std::vector<std::vector<bool>> planes_read;  // one an input; empty for whole inputs
+  std::uint64_t bytes = 0;                     // that it claimed
 };
 
 class RunState {
@@ -28,12 +29,17 @@ class RunState {
   Ledger ledger;
 
   // ----- published results
-  Buffer buffer(PortRef p) const { return buffers_[p.node][p.port]; }  // empty where not there (yet, or any more)
+  Buffer buffer(PortRef p) const {
+    return buffers_[p.node][p.port];
+  }  // empty where not there (yet, or any more)
   void publish(PortRef p, Buffer b);
   // Only for the caller: a part of the port's pixels, which no node may read as if it were all.
   void publish_part(PortRef p, Buffer b);
   std::shared_ptr<const ReadyNode> ready(std::size_t node) const { return ready_[node]; }
-  void set_ready(std::size_t node, std::shared_ptr<const ReadyNode> r) { ready_[node] = std::move(r); }
+  void set_ready(std::size_t node, std::shared_ptr<const ReadyNode> r) {
+    ledger.add_bytes(r->bytes);
+    ready_[node] = std::move(r);
+  }
 
   // A step that had announced to use the port is over; after the last one the buffer is freed.
   void announce_use(PortRef p) { ++uses_[p.node][p.port]; }
@@ -43,8 +49,10 @@ class RunState {
 
   // ----- reports, from any thread
   void problem(Diagnostic d, std::size_t order);
-  void warning(std::size_t node, const std::string& code, const std::string& message);  // to the observer as well
+  void warning(std::size_t node, const std::string& code,
+               const std::string& message);  // to the observer as well
   void culprit(Culprit c, std::size_t order);
+  void decided(std::size_t node, const std::vector<std::pair<std::string, Verdict>>& verdicts);
   // What every file of this run says of where it comes from: program and version, title and digest of the graph.
   std::vector<std::pair<std::string, std::string>> metadata() const;
 
@@ -71,6 +79,7 @@ class RunState {
   std::mutex mutex_, observer_mutex_;
   std::vector<std::pair<std::size_t, Diagnostic>> problems_;
   std::vector<std::pair<std::size_t, Culprit>> culprits_;
+  std::vector<std::pair<std::size_t, NodeVerdict>> verdicts_;
 };
 
 // run_pass.cpp: walks the tiles of one pass of the plan, makes its roots whole and writes its outputs.
