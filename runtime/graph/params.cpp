@@ -202,18 +202,30 @@ class NodeParams {
     try {
       node_.type->check(params);
     } catch (const NodeError& e) {
-      const std::string_view part = e.part, above = "/params/";
-      Diagnostic d{.code = e.code, .pointer = node_.pointer, .message = e.what()};
+      Diagnostic d{.code = e.code,
+                   .pointer = node_.pointer,
+                   .message = e.what(),
+                   .expected = "parameters that fit together"};
       FoundValue found;
-      if (part.starts_with(above)) {
-        const std::string_view path = part.substr(above.size());
-        const std::string_view name = path.substr(0, path.find('/'));
-        found = find_value(node_, std::string(name), instance_);
-        d.pointer =
-            found.value ? pointer_to(name, found) + std::string(path.substr(name.size())) : node_.pointer;
+      if (const ParamField* field = field_of(e.part)) {
+        found = find_value(node_, field->name, instance_);
+        d.expected = field->doc.substr(0, field->doc.find_last_not_of('.') + 1);
+        if (found.value) {
+          d.pointer = pointer_to(field->name, found) + e.part.substr(at_param(field->name).size());
+          d.got = quoted_json(*found.value);
+        }
       }
       add(std::move(d), found);
     }
+  }
+
+  // The parameter that a NodeError names, or that holds what it names.
+  const ParamField* field_of(std::string_view part) const {
+    for (const ParamField& field : node_.type->params.fields) {
+      const std::string own = at_param(field.name);
+      if (part.starts_with(own) && (part.size() == own.size() || part[own.size()] == '/')) return &field;
+    }
+    return nullptr;
   }
 
   const DocumentNode& node_;

@@ -52,7 +52,7 @@ struct RunResult {
   std::vector<std::string> files;     // written, in order of the outputs
   Diagnostics problems;               // runtime errors and warnings, each at its node's place
   std::optional<Culprit> culprit;
-  std::uint64_t peak_bytes = 0;       // of live buffers
+  std::uint64_t peak_bytes = 0;       // of live buffers, prepared nodes and tiles
   std::vector<NodeVerdict> verdicts;  // of the nodes that ran, in the graph's order
   std::vector<NodeCaching> caching;   // one a node that was looked at; empty without a cache
   bool cache_differs = false;         // options.check_cache: some buffer on disk was not what the node makes

@@ -44,6 +44,7 @@ class Pass {
     const auto start = state_.now();
     const PixelOutcome outcome = walk(edge);
     for (auto& sink : sinks_) sink->finish();
+    count_tiles(outcome.worker_bytes);
     report(outcome, start);
     state_.caches.ran_pass(pass_.nodes, state_.now() - start);
     publish();
@@ -59,7 +60,8 @@ class Pass {
       const auto ready = state_.ready(n);
       TileOp op{.type = node.type, .prepared = {ready, &ready->node}, .inputs = {}, .planes_read = {}};
       for (const auto& frame : ready->node.frames) op.planes_read.emplace_back(frame->planes.size(), false);
-      for (std::size_t i = 0; i < node.inputs.size(); ++i) op.inputs.push_back(input(node, i, ready->planes_read[i]));
+      for (std::size_t i = 0; i < node.inputs.size(); ++i)
+        op.inputs.push_back(input(node, i, ready->planes_read[i]));
       op_of_[n] = ops_.size();
       ops_.push_back(std::move(op));
     }
@@ -92,7 +94,9 @@ class Pass {
 
   const Frame& frame(const TileRoot& r) const { return *ops_[r.op].prepared->frames[r.port]; }
 
-  Rect cut_to_region(Rect r) const { return state_.options.region ? intersection(r, *state_.options.region) : r; }
+  Rect cut_to_region(Rect r) const {
+    return state_.options.region ? intersection(r, *state_.options.region) : r;
+  }
 
   void find_roots() {
     for (const PixelPass::Root& root : pass_.roots) {
@@ -125,7 +129,8 @@ class Pass {
   // A picture that only streams into a file, made whole besides where the cache wants to keep it.
   std::optional<Raster> whole_for_cache(PortRef port) {
     const Frame& f = frame(roots_.back());
-    const bool again = std::any_of(streamed_.begin(), streamed_.end(), [&](const auto& s) { return s.first == port; });
+    const bool again =
+        std::any_of(streamed_.begin(), streamed_.end(), [&](const auto& s) { return s.first == port; });
     if (again || !state_.caches.wants_whole(port, raster_bytes(f))) return std::nullopt;
     streamed_.emplace_back(port, roots_.size() - 1);
     return Raster(f);
@@ -229,8 +234,8 @@ class Pass {
       std::uint64_t bands = 0;
       for (std::size_t r = 0; r < roots_.size(); ++r)
         if (!whole_[r])
-          bands += 4 * program.frame(roots_[r]).bytes_per_pixel() * static_cast<std::uint64_t>(area_.width()) *
-                   static_cast<std::uint64_t>(edge);
+          bands += 4 * program.frame(roots_[r]).bytes_per_pixel() *
+                   static_cast<std::uint64_t>(area_.width()) * static_cast<std::uint64_t>(edge);
       try {
         state_.check_memory(tiles + bands + whole_bytes());
         return edge;
@@ -249,15 +254,24 @@ class Pass {
 
   PixelOutcome walk(int edge) {
     const TileProgram program(ops_, roots_);
-    PixelJob job{.program = &program, .whole = whole_, .sinks = jobs_, .region = area_, .tile_edge = edge,
-                 .cancel = state_.options.cancel, .progress = {}};
+    PixelJob job{.program = &program,
+                 .whole = whole_,
+                 .sinks = jobs_,
+                 .region = area_,
+                 .tile_edge = edge,
+                 .cancel = state_.options.cancel,
+                 .progress = {}};
     if (state_.options.observer != nullptr)
-      job.progress = [this](double done) { state_.observe([&](Observer& o) { o.progress(last_node(), done); }); };
+      job.progress = [this](double done) {
+        state_.observe([&](Observer& o) { o.progress(last_node(), done); });
+      };
     if (ops_.empty() && edge == 0) job.tile_edge = 64;
     return run_pixels(job);
   }
 
-  std::string last_node() const { return pass_.nodes.empty() ? std::string() : graph_.nodes[pass_.nodes.back()].id; }
+  std::string last_node() const {
+    return pass_.nodes.empty() ? std::string() : graph_.nodes[pass_.nodes.back()].id;
+  }
 
   void publish() {
     for (std::size_t i = 0; i < pass_.roots.size(); ++i) {
@@ -265,8 +279,10 @@ class Pass {
       const bool complete = whole_[i]->frame().window == frame(roots_[i]).window;
       const Buffer b = graph_.port(port).types.front()->from_raster(*whole_[i]);
       if (complete) state_.caches.keep(port, b);
-      if (complete) state_.publish(port, b);
-      else state_.publish_part(port, b);
+      if (complete)
+        state_.publish(port, b);
+      else
+        state_.publish_part(port, b);
     }
     state_.ledger.remove_bytes(early_bytes_);
   }
@@ -278,11 +294,22 @@ class Pass {
 
   // ----- reporting
 
+  // What the tiles and scratch memory of all threads were is known afterwards.
+  void count_tiles(std::uint64_t bytes) {
+    state_.ledger.add_bytes(bytes);
+    state_.ledger.remove_bytes(bytes);
+  }
+
   void report(const PixelOutcome& outcome, std::chrono::nanoseconds start) {
     std::vector<PixelNodeTime> times;
-    WorkDone done{.kind = WorkDone::Kind::pixels, .nodes = {}, .start = start, .time = state_.now() - start,
-                  .bytes = whole_bytes(), .cache = CacheVerdict::off,
-                  .thread = std::max(0, tbb::this_task_arena::current_thread_index()), .counters = {}};
+    WorkDone done{.kind = WorkDone::Kind::pixels,
+                  .nodes = {},
+                  .start = start,
+                  .time = state_.now() - start,
+                  .bytes = whole_bytes(),
+                  .cache = CacheVerdict::off,
+                  .thread = std::max(0, tbb::this_task_arena::current_thread_index()),
+                  .counters = {}};
     for (std::size_t i = 0; i < ops_.size(); ++i) {
       const std::string& id = graph_.nodes[pass_.nodes[i]].id;
       PixelNodeTime t{id, outcome.costs.time[i], outcome.costs.pixels[i], 0};
@@ -303,8 +330,8 @@ class Pass {
     if (outcome.culprit) {
       const PixelCulprit& c = *outcome.culprit;
       const std::size_t node = pass_.nodes[c.op];
-      const Culprit culprit{graph_.nodes[node].id, graph_.nodes[node].type->outputs[c.port].name, c.health.first, c.inputs,
-                            c.health};
+      const Culprit culprit{graph_.nodes[node].id, graph_.nodes[node].type->outputs[c.port].name,
+                            c.health.first, c.inputs, c.health};
       state_.caches.said(node, culprit);
       state_.culprit(culprit, node);
     }
@@ -319,7 +346,8 @@ class Pass {
   std::vector<std::optional<Raster>> whole_;  // one a root
   std::vector<SinkJob> jobs_;
   std::vector<std::unique_ptr<Sink>> sinks_;
-  std::vector<std::pair<PortRef, std::size_t>> streamed_;  // ports of files that are whole for the cache, and their roots
+  std::vector<std::pair<PortRef, std::size_t>>
+      streamed_;  // ports of files that are whole for the cache, and their roots
   std::vector<TileCosts> early_;
   std::uint64_t early_bytes_ = 0;  // of rasters made whole by a cut
   Rect area_;
