@@ -35,10 +35,12 @@ std::string graph_with(const std::string& nodes, const std::string& outputs, con
          outputs + " } }";
 }
 
-// A light without a direction is known only when its node runs.
-const std::string failing =
-    graph_with(R"("a": { "type": "light.directional", "params": { "direction": [0, 0, 0] } })",
-               R"("o": { "from": "a" })");
+// Which materials a mesh has is known only when it is there.
+const std::string failing = graph_with(
+    R"("box": { "type": "mesh.box" }, "clay": { "type": "shade.material" },
+       "a": { "type": "mesh.assign_material", "in": { "mesh": "box", "material": "clay" },
+              "params": { "instead_of": "gold" } })",
+    R"("o": { "from": "a" })");
 
 ProcessResult shell(const std::string& line) { return test::run_process({"/bin/sh", "-c", line}); }
 
@@ -60,13 +62,13 @@ TEST(CliEnds, AFailedRunThatWantsAPortSaysWhy) {
     text.insert(text.end(), want.begin(), want.end());
     const auto said = frustum(text);
     EXPECT_EQ(said.code, 2) << said.err;
-    EXPECT_THAT(said.err, AllOf(HasSubstr("error[zero_direction]"), HasSubstr("/nodes/a")));
+    EXPECT_THAT(said.err, AllOf(HasSubstr("error[unknown_material]"), HasSubstr("/nodes/a")));
     EXPECT_THAT(said.out, IsEmpty());
     text.emplace_back("--json");
     const auto object = frustum(text);
     EXPECT_EQ(object.code, 2);
     const auto out = json::parse(object.out);
-    EXPECT_EQ(codes(out), std::vector<std::string>{"zero_direction"});
+    EXPECT_EQ(codes(out), std::vector<std::string>{"unknown_material"});
     EXPECT_EQ(out["end"], "failed");
     EXPECT_THAT(out["ports"], IsEmpty());
   }
@@ -212,7 +214,7 @@ TEST(CliEnds, CheckGoesOnAfterAFileThatCannotBeRead) {
   const auto r = frustum({"check", folder.file("none"), folder.write("g.json", failing)});
   EXPECT_EQ(r.code, 3);
   EXPECT_THAT(r.err, HasSubstr("none"));
-  EXPECT_THAT(r.out, HasSubstr("g.json: 1 nodes, 1 outputs, no errors"));
+  EXPECT_THAT(r.out, HasSubstr("g.json: 3 nodes, 1 outputs, no errors"));
 }
 
 // ----- frames

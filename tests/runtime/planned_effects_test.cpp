@@ -10,13 +10,14 @@ namespace {
 // A box wholly in view, one sample a pixel.
 constexpr auto box = R"({ "format": "frustum.graph/1", "nodes": {
     "box": { "type": "mesh.box" },
-    "camera": { "type": "scene.camera", "params": { "eye": [3, 2, 4], "resolution": [32, 24] } },
+    "camera": { "type": "scene.camera", "params": { "eye": [6, 4, 8], "resolution": [32, 24] } },
     "eye": { "type": "project.view", "in": { "mesh": "box", "camera": "camera" } },
     "clip": { "type": "project.perspective", "in": { "mesh": "eye", "camera": "camera" } },
     "cut": { "type": "clip.homogeneous", "in": { "mesh": "clip" } },
     "screen": { "type": "project.viewport", "in": { "mesh": "cut", "camera": "camera" } },
     "hits": { "type": "rasterize.triangles", "in": { "mesh": "screen" } },
-    "facts": { "type": "check.statistics", "in": { "buffer": "hits.depth" } } } })";
+    "points": { "type": "rasterize.attributes", "in": { "hits": "hits", "mesh": "screen" } },
+    "facts": { "type": "check.statistics", "in": { "image": "points" } } } })";
 
 Graph load(const char* text) {
   static const Session session;
@@ -81,7 +82,7 @@ TEST(PlannedEffects, WhatIsAskedOfEffectsIsInTheKeysOfTheNodesThatHaveThem) {
   const auto skipped = node_keys(g, clipping);
   for (std::size_t i = 0; i < g.nodes.size(); ++i) {
     const std::string& id = g.nodes[i].id;
-    const bool follows = id == "cut" || id == "screen" || id == "hits" || id == "facts";
+    const bool follows = id == "cut" || id == "screen" || id == "hits" || id == "points" || id == "facts";
     EXPECT_EQ(plain[i] != forced[i], follows) << id;
     EXPECT_EQ(forced[i] != skipped[i], follows) << id;
   }

@@ -53,7 +53,7 @@ Graph two_slow(const TempFolder& folder, double early, double late, bool nan = f
   Graph g;
   g.file = folder.file("graph.json");
   for (const auto& [id, add] : {std::pair{"early", early}, std::pair{"late", late}}) {
-    GraphNode n{.id = id, .type = &slow::type(), .params = {}, .inputs = {}, .place = {}};
+    GraphNode n{.id = id, .type = &slow::type(), .params = {}, .inputs = {}, .place = {}, .parts = {}};
     n.params = std::make_shared<const slow::Params>(slow::Params{add, nan && g.nodes.empty()});
     n.inputs.resize(1);
     if (!g.nodes.empty()) n.inputs[0].push_back(PortRef{0, 0});
