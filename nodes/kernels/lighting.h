@@ -11,6 +11,7 @@
 
 #include "nodes/kernels/elementary.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -29,6 +30,19 @@ struct LightSource {
   Triple<R> color{};
   Triple<R> place{};        ///< unit vector towards a directional light, or the position of a point light
   Triple<R> attenuation{};  ///< of a point light: colour / (x + y d + z d^2)
+  bool is_spot = false;     ///< a point light that shines into a cone
+  Triple<R> axis{};         ///< of the cone: unit vector along which it shines
+  R cone_scale = 0,
+    cone_offset = 1;  ///< strength times t^2, t = cosine from the axis * scale + offset in [0, 1]
+};
+
+/// Between the inner and the outer angle from its axis a spot fades like the square of a ramp in the cosine
+/// (as glTF's KHR_lights_punctual recommends). A ramp is at least 2^-12 wide, so that the rounding of a
+/// float's cosine moves the strength by no more than 2^-11.
+struct Cone {
+  double scale, offset;
+  Cone(double inner, double outer)
+      : scale(1 / std::max(std::cos(inner) - std::cos(outer), 0x1p-12)), offset(-std::cos(outer) * scale) {}
 };
 
 enum class Highlight : std::uint8_t { none, phong, blinn };
@@ -148,6 +162,12 @@ Received<R> receive(const LightSetup<R>& s, const Triple<R>& normal, const Tripl
       strength =
           R(1) / (light.attenuation[0] + light.attenuation[1] * distance + light.attenuation[2] * square);
       strength = strength < R(greatest_strength) ? strength : R(greatest_strength);
+      if (light.is_spot) {
+        R t = light.cone_offset - dot3(l, light.axis) * light.cone_scale;
+        t = t > R(0) ? t : R(0);
+        t = t < R(1) ? t : R(1);
+        strength = strength * (t * t);
+      }
     }
     const R n_l = dot3(n, l);
     if (!(n_l > R(0))) continue;

@@ -94,9 +94,17 @@ Surface<R> surface_of(const Material& m, const glm::dvec3& ambient_light) {
 
 template <class R>
 kernels::LightSource<R> source_of(const Light& light) {
-  const bool is_point = light.kind == Light::Kind::point;
-  return {is_point, narrow<R>(light.color), narrow<R>(is_point ? light.position : -light.direction),
-          narrow<R>(light.attenuation)};
+  const bool is_spot = light.kind == Light::Kind::spot,
+             is_point = is_spot || light.kind == Light::Kind::point;
+  kernels::LightSource<R> s{is_point, narrow<R>(light.color),
+                            narrow<R>(is_point ? light.position : -light.direction),
+                            narrow<R>(light.attenuation)};
+  if (is_spot) {
+    const kernels::Cone cone(light.inner, light.outer);
+    s.is_spot = true, s.axis = narrow<R>(light.direction);
+    s.cone_scale = static_cast<R>(cone.scale), s.cone_offset = static_cast<R>(cone.offset);
+  }
+  return s;
 }
 
 const Camera* camera_of(const Inputs& in) { return in.camera ? in.camera->get() : in.mesh->camera.get(); }

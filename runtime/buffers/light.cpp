@@ -9,7 +9,7 @@
 namespace frustum {
 namespace {
 
-constexpr std::array kind_names{"ambient", "directional", "point"};
+constexpr std::array kind_names{"ambient", "directional", "point", "spot"};
 
 Json json(const glm::dvec3& v) { return {json_number(v.x), json_number(v.y), json_number(v.z)}; }
 
@@ -21,6 +21,7 @@ struct Ops {
       h.value(l.kind);
       for (const glm::dvec3& v : {l.color, l.direction, l.position, l.attenuation})
         h.value(v.x).value(v.y).value(v.z);
+      h.value(l.inner).value(l.outer);
     }
   }
   static void save(const LightSet& s, ArchiveWriter& w) {
@@ -28,14 +29,16 @@ struct Ops {
     for (const Light& l : s.lights) {
       w.value(l.kind);
       for (const glm::dvec3& v : {l.color, l.direction, l.position, l.attenuation}) w.raw(&v, sizeof v);
+      w.value(l.inner), w.value(l.outer);
     }
   }
   static LightSet load(ArchiveReader& r) {
     LightSet s;
     for (std::size_t n = r.count(sizeof(Light::Kind)); n > 0; --n) {
       Light& l = s.lights.emplace_back();
-      l.kind = r.choice(Light::Kind::point);
+      l.kind = r.choice(Light::Kind::spot);
       for (glm::dvec3* v : {&l.color, &l.direction, &l.position, &l.attenuation}) r.raw(v, sizeof *v);
+      for (double* v : {&l.inner, &l.outer}) r.raw(v, sizeof *v);
     }
     return s;
   }
@@ -54,7 +57,9 @@ struct Ops {
                                                             {"position", l.position.z},
                                                             {"attenuation", l.attenuation.x},
                                                             {"attenuation", l.attenuation.y},
-                                                            {"attenuation", l.attenuation.z}};
+                                                            {"attenuation", l.attenuation.z},
+                                                            {"inner", l.inner},
+                                                            {"outer", l.outer}};
       sum.add(health_of(s.lights.size() == 1 ? "light" : fmt::format("light {}", i), values));
     }
     return sum;
@@ -63,9 +68,11 @@ struct Ops {
     Json lights = Json::array();
     for (const Light& l : s.lights) {
       Json one = {{"kind", kind_names[static_cast<std::size_t>(l.kind)]}, {"color", json(l.color)}};
-      if (l.kind == Light::Kind::directional) one["direction"] = json(l.direction);
-      if (l.kind == Light::Kind::point)
+      const bool spot = l.kind == Light::Kind::spot;
+      if (spot || l.kind == Light::Kind::directional) one["direction"] = json(l.direction);
+      if (spot || l.kind == Light::Kind::point)
         one["position"] = json(l.position), one["attenuation"] = json(l.attenuation);
+      if (spot) one["inner"] = json_number(l.inner), one["outer"] = json_number(l.outer);
       lights.push_back(std::move(one));
     }
     return {{"lights", std::move(lights)}};

@@ -12,12 +12,16 @@
 namespace frustum {
 
 struct Light {
-  enum class Kind : std::uint8_t { ambient, directional, point };
+  enum class Kind : std::uint8_t { ambient, directional, point, spot };
   Kind kind = Kind::ambient;
   glm::dvec3 color{1};
-  glm::dvec3 direction{0, -1, 0};   // directional: the way the light travels, world space, unit length
-  glm::dvec3 position{0};           // point: world space
-  glm::dvec3 attenuation{1, 0, 0};  // point: intensity is divided by x + y d + z d^2, d the distance
+  glm::dvec3 direction{0, -1,
+                       0};  // directional: the way the light travels; spot: the axis of its cone; world
+                            // space, unit length
+  glm::dvec3 position{0};   // point, spot: world space
+  glm::dvec3 attenuation{1, 0, 0};  // point, spot: intensity is divided by x + y d + z d^2, d the distance
+  double inner = 0,
+         outer = 0;  // spot: angles from the axis, where the light starts to fade and where it ends
 };
 
 // What one link carries: all the lights of a scene, or just one.

@@ -172,6 +172,15 @@ class Walker {
     out_.cameras.push_back({node.text("name").value_or(""), o.text("name").value_or(""), c});
   }
 
+  static void read_cone(const Object& light, Light& l) {
+    const auto spot = light.object("spot");
+    if (!spot) light.fail("a spot has an object \"spot\"");
+    l.inner = spot->number("innerConeAngle", 0);
+    l.outer = spot->number("outerConeAngle", std::numbers::pi / 4);
+    if (!(l.inner >= 0 && l.inner < l.outer && l.outer <= std::numbers::pi / 2))
+      spot->fail("0 <= innerConeAngle < outerConeAngle <= pi / 2 must hold");
+  }
+
   void add_light(const Object& node, const Placement& world) {
     const auto extension = node.extension("KHR_lights_punctual");
     if (!extension) return;
@@ -186,14 +195,14 @@ class Walker {
     const double intensity = o.number("intensity", 1);
     for (const double v : {color[0], color[1], color[2], intensity})
       if (!(v >= 0)) o.fail("colour and intensity must not be negative");
-    if (type == "spot") notes_.add(o.path(), "is a spot: it shines to all sides");
     if (!directional && o.has("range")) notes_.add(o.path(), "has a range: it shines on beyond");
-    Light l{.kind = directional ? Light::Kind::directional : Light::Kind::point,
+    Light l{.kind = directional      ? Light::Kind::directional
+                    : type == "spot" ? Light::Kind::spot
+                                     : Light::Kind::point,
             .color = glm::dvec3(color[0], color[1], color[2]) * (intensity / std::numbers::pi)};
-    if (directional)
-      l.direction = -axis(world, 2, node);
-    else
-      l.position = world.translation, l.attenuation = {0, 0, 1};
+    if (l.kind == Light::Kind::spot) read_cone(o, l);
+    if (l.kind != Light::Kind::point) l.direction = -axis(world, 2, node);
+    if (!directional) l.position = world.translation, l.attenuation = {0, 0, 1};
     out_.lights.push_back(l);
   }
 

@@ -330,6 +330,27 @@ TEST(Gltf, CamerasAndLightsStandWhereTheirNodesDo) {
   EXPECT_NEAR(s.lights.lights[1].color.g, 1, 1e-15);
 }
 
+TEST(Gltf, ASpotKeepsItsCone) {
+  const auto lights = [](const nlohmann::json& spot) {
+    GltfMaker g = test::one_triangle();
+    g.document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", spot}}};
+    g.node({{"translation", {0, 4, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    return g.glb();
+  };
+  const Light whole = read(lights({{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}})).lights.lights.at(0);
+  EXPECT_EQ(whole.kind, Light::Kind::spot);
+  EXPECT_EQ(whole.position, glm::dvec3(0, 4, 0));
+  EXPECT_EQ(whole.direction, glm::dvec3(0, 0, -1));
+  EXPECT_EQ(whole.inner, 0.25);
+  EXPECT_EQ(whole.outer, 0.5);
+  const Light usual = read(lights(nlohmann::json::object())).lights.lights.at(0);
+  EXPECT_EQ(usual.inner, 0);
+  EXPECT_DOUBLE_EQ(usual.outer, std::numbers::pi / 4);
+  EXPECT_EQ(test::gltf_problem(lights({{"innerConeAngle", 0.5}, {"outerConeAngle", 0.25}})).first,
+            "malformed_file");
+  EXPECT_EQ(test::gltf_problem(lights({{"outerConeAngle", 2}})).first, "malformed_file");
+}
+
 // ----- files without an end
 
 TEST(Gltf, AFileCutOffAnywhereIsAProblemAndNotACrash) {

@@ -111,6 +111,13 @@ HWY_INLINE void receive_vector(const LightSetup<float>& s, const PointRows<float
       strength = hn::Div(one, hn::Add(hn::Add(a[0], hn::Mul(a[1], distance)), hn::Mul(a[2], square)));
       const V most = hn::Set(d, static_cast<float>(greatest_strength));
       strength = hn::IfThenElse(hn::Lt(strength, most), strength, most);
+      if (light.is_spot) {
+        V t = hn::Sub(hn::Set(d, light.cone_offset),
+                      hn::Mul(dot(l, set3(light.axis)), hn::Set(d, light.cone_scale)));
+        t = hn::IfThenElseZero(hn::Gt(t, zero), t);
+        t = hn::IfThenElse(hn::Lt(t, one), t, one);
+        strength = hn::Mul(strength, hn::Mul(t, t));
+      }
     }
     const V n_l = dot(n, l);
     const M lit = hn::Gt(n_l, zero);

@@ -120,6 +120,35 @@ TEST(Lighting, PointLightsFallOffWithTheSquareOfDistance) {
   EXPECT_EQ(kernels::receive(s, {0, 0, 1}, {0, 0, 2}).diffuse[0], 0) << "on the light itself";
 }
 
+TEST(Lighting, ASpotFadesLikeTheSquareOfARampInTheCosine) {
+  constexpr double inner = 0.3, outer = 0.7;
+  const kernels::Cone cone(inner, outer);
+  const kernels::LightSource<double> light{true, {1, 1, 1},  {0, 0, 1},  {1, 0, 0},
+                                           true, {0, 0, -1}, cone.scale, cone.offset};
+  // Points on the plane z = 0 at an angle from the axis; their normals look at the light.
+  const auto at = [&](double angle) {
+    const double x = std::tan(angle);
+    return kernels::receive(one_light(light, Highlight::none, 1), {-x, 0, 1}, {x, 0, 0}).diffuse[0];
+  };
+  EXPECT_DOUBLE_EQ(at(0), 1);
+  EXPECT_NEAR(at(inner), 1, 1e-12);
+  for (const double angle : {0.4, 0.5, 0.6}) {
+    const double ramp = (std::cos(angle) - std::cos(outer)) / (std::cos(inner) - std::cos(outer));
+    EXPECT_NEAR(at(angle), ramp * ramp, 1e-12) << angle;
+    EXPECT_NEAR(at(-angle), ramp * ramp, 1e-12) << angle;
+  }
+  EXPECT_NEAR(at(outer), 0, 1e-24);
+  EXPECT_EQ(at(0.9), 0);
+  EXPECT_EQ(kernels::receive(one_light(light, Highlight::none, 1), {0, 0, -1}, {0, 0, 2}).diffuse[0], 0)
+      << "behind the light";
+}
+
+TEST(Lighting, AConeWithoutAFadeHasAnEdgeThatRoundingDoesNotMove) {
+  const kernels::Cone cone(0.5, 0.5);
+  EXPECT_EQ(cone.scale, 4096);
+  EXPECT_NEAR(std::cos(0.5) * cone.scale + cone.offset, 0, 1e-9);
+}
+
 TEST(Lighting, DegenerateVectorsGiveNoLightAndNoNan) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
                    inf = std::numeric_limits<double>::infinity();
@@ -179,9 +208,11 @@ std::string difference(const std::vector<float>& a, const std::vector<float>& b)
 TEST(LightingSimd, EveryTargetHasTheBitsOfTheScalarTwin) {
   constexpr std::size_t n = 517;
   const RandomRows in(10, n, 9);
-  const kernels::LightSource<float> lights[] = {{false, {1, 0.5F, 0.2F}, {0.6F, 0, 0.8F}, {}},
-                                                {true, {3, 2, 1}, {0.5F, 1, 2}, {0.1F, 0.2F, 1}},
-                                                {true, {1, 1, 1}, {-1, 0, 0}, {0, 0, 1}}};
+  const kernels::LightSource<float> lights[] = {
+      {false, {1, 0.5F, 0.2F}, {0.6F, 0, 0.8F}, {}},
+      {true, {3, 2, 1}, {0.5F, 1, 2}, {0.1F, 0.2F, 1}},
+      {true, {1, 1, 1}, {-1, 0, 0}, {0, 0, 1}},
+      {true, {2, 1, 1}, {1, 1, 1}, {1, 0, 0.1F}, true, {-0.6F, 0, -0.8F}, 3.0F, -1.5F}};
   for (const Highlight h : {Highlight::none, Highlight::phong, Highlight::blinn})
     for (const double e : {0.0, 1.0, 60.0, 33.3})
       for (const std::uint32_t wanted : {kernels::nothing_there, 1u})
