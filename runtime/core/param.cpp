@@ -83,7 +83,7 @@ void read_color(const Json& j, Color& out, const ParamOptions& options, ParamRea
   }
   for (const auto& [key, value] : j.items())
     if (key != "space" && key != "value")
-      reader.inside(key, [&] {
+      reader.inside(key, [&, &key = key] {
         reader.problem("unknown_key", fmt::format("'{}' is not a key of a colour", key), "space, value", key);
       });
   if (!j.contains("space") || !j.contains("value") || !j["space"].is_string())

@@ -47,7 +47,7 @@ void CacheIndex::read(const std::string& text) {
   try {
     if (j.at("format") != format_name) return;
     for (const auto& [id, n] : j.at("nodes").items()) {
-      const auto get = [&](const char* name) { return n.at(name).get<std::string>(); };
+      const auto get = [&n = n](const char* name) { return n.at(name).get<std::string>(); };
       nodes_[id] = {get("build"),
                     get("key"),
                     get("type"),
