@@ -236,8 +236,12 @@ bool ExpectedProblem::matches(const Diagnostic& d) const {
 }
 
 std::optional<Suite> load_suite(const std::string& path, Diagnostics& problems) {
+  return load_suite_text(read_text(path), path, problems);
+}
+
+std::optional<Suite> load_suite_text(std::string written, const std::string& path, Diagnostics& problems) {
   Diagnostics mine;
-  const auto text = SourceText::read(read_text(path), path, mine);
+  const auto text = SourceText::read(std::move(written), path, mine);
   Suite suite;
   suite.file = path, suite.name = fs::path(path).stem().string();
   if (text->complete()) {

@@ -61,6 +61,9 @@ struct Suite {
 // cannot be read. Cost: linear in the text and the number of cases, of which a file may have 100,000.
 std::optional<Suite> load_suite(const std::string& path, Diagnostics& problems);
 
+// The same from text; `path` is what graphs are found from and what messages name.
+std::optional<Suite> load_suite_text(std::string text, const std::string& path, Diagnostics& problems);
+
 // JSON Schema (draft 2020-12) of suite files, from the declarations that the reader reads by.
 Json suite_schema();
 
