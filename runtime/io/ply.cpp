@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 namespace frustum {
@@ -140,6 +141,15 @@ class PlyReader {
     color_scale_ = is_real(type) ? 0 : type == ply::Number::u16 ? 65535 : 255;
   }
 
+  // Columns of a mesh have different names, and elements may have properties of the same.
+  std::string own_name(const std::string& property, Domain domain) {
+    std::string name = (has_meaning(property) ? "ply_" : "") + property;
+    if (taken_.contains(name) && domain == Domain::face) name.insert(0, "face_");
+    const std::size_t length = name.size();
+    for (int n = 2; !taken_.insert(name).second; ++n) name.replace(length, name.npos, fmt::format("_{}", n));
+    return name;
+  }
+
   // Numbers without a meaning here, as columns of their own.
   void take_others(const Element& e, std::vector<Slot>& slots, Domain domain) {
     for (std::size_t p = 0; p < slots.size(); ++p) {
@@ -150,7 +160,7 @@ class PlyReader {
         skipped_.push_back(fmt::format("{}.{}", e.name, property.name));
         continue;
       }
-      const std::string name = (has_meaning(property.name) ? "ply_" : "") + property.name;
+      const std::string name = own_name(property.name, domain);
       const bool is_signed =
           slot.type == ply::Number::i8 || slot.type == ply::Number::i16 || slot.type == ply::Number::i32;
       const NumberKind kind = is_real(slot.type) ? number_kind_of<R>
@@ -306,7 +316,8 @@ class PlyReader {
   std::vector<std::vector<Slot>> slots_;  // by element
   std::shared_ptr<Column> position_, normal_, uv_, color_, triangle_;
   std::vector<Ref<Column>> vertex_others_, face_others_;
-  int color_scale_ = 0;  // 0: linear
+  std::set<std::string> taken_;  // their names
+  int color_scale_ = 0;          // 0: linear
   bool has_corner_uv_ = false;
   std::uint64_t fans_ = 0, faces_skipped_ = 0, uv_missing_ = 0, normals_computed_ = 0;
   std::vector<std::string> skipped_;

@@ -27,7 +27,8 @@ namespace frustum {
 //                                                          (runtime/io/triangulate.h), fewer than 3 corners
 //                                                          are left out and counted
 //   texcoord (a list of u v for every corner)              uv of corners
-//   any other number                                       a face column, as above
+//   any other number                                       a face column, as above; "face_" stands before a
+//                                                          name that vertices have too
 //   element "tristrips": vertex_indices                    triangle; -1 begins a new strip
 //
 // Reals have ctx.precision. Other elements and lists are skipped (warning "properties_skipped"). Normals that

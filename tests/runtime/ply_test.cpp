@@ -154,6 +154,19 @@ TEST(Ply, NamesWithAMeaningHereAreSetApart) {
   EXPECT_THAT(values<std::int32_t>(m, "ply_uv"), ElementsAre(-4));
 }
 
+TEST(Ply, NumbersOfVerticesAndFacesMayHaveTheSameName) {
+  const auto m = read(
+                     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                     "property float z\nproperty float quality\nproperty uchar ply_w\nproperty uchar w\n"
+                     "element face 1\nproperty list uchar int vertex_indices\nproperty float quality\n"
+                     "end_header\n0 0 0 1 4 7\n1 0 0 2 5 8\n0 1 0 3 6 9\n3 0 1 2 0.5\n")
+                     .mesh;
+  EXPECT_THAT(values<float>(m, "quality"), ElementsAre(1, 2, 3));
+  EXPECT_THAT(values<float>(m, "face_quality"), ElementsAre(0.5f));
+  EXPECT_THAT(values<std::uint32_t>(m, "ply_w"), ElementsAre(4, 5, 6));
+  EXPECT_THAT(values<std::uint32_t>(m, "ply_w_2"), ElementsAre(7, 8, 9));
+}
+
 TEST(Ply, CoordinatesOfCornersMakeSeams) {
   const auto [m, warnings] = read(vertex_header +
                                   "element face 2\nproperty list uchar int vertex_indices\n"
