@@ -1,6 +1,6 @@
 #include "runtime/app/files.h"
 
-#include "runtime/core/error.h"
+#include "runtime/core/partial_file.h"
 #include "runtime/core/read_file.h"
 
 #include <fmt/format.h>
@@ -16,10 +16,6 @@
 namespace frustum {
 namespace fs = std::filesystem;
 namespace {
-
-[[noreturn]] void cannot_write(const fs::path& path, const std::string& why) {
-  throw WorldError("cannot_write_file", fmt::format("cannot write {}: {}", path.string(), why));
-}
 
 void add_unique(std::vector<std::string>& list, const fs::path& folder) {
   std::error_code none;
@@ -52,27 +48,9 @@ bool matches(std::string_view name, std::string_view pattern) {
 std::string read_text(const fs::path& path) { return read_file(path.string()); }
 
 void write_text(const fs::path& path, std::string_view text) {
-  std::error_code problem;
-  // The new file would take the place of a device or a pipe.
-  if (const fs::file_status s = fs::status(path, problem); fs::exists(s) && !fs::is_regular_file(s))
-    cannot_write(path, fs::is_directory(s) ? std::strerror(EISDIR) : "it is not a regular file");
-  if (path.has_parent_path()) fs::create_directories(path.parent_path(), problem);
-  fs::path temporary = path;
-  temporary += fmt::format(".{}.tmp", ::getpid());
-  std::ofstream out(temporary, std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  if (!out) {
-    const int reason = errno;
-    fs::remove(temporary, problem);
-    cannot_write(path, std::strerror(reason));
-  }
-  fs::rename(temporary, path, problem);
-  if (problem) {
-    const std::string reason = problem.message();
-    fs::remove(temporary, problem);
-    cannot_write(path, reason);
-  }
+  PartialFile file(path.string());
+  file.add(text);
+  file.commit();
 }
 
 bool write_if_changed(const fs::path& path, std::string_view text) {

@@ -112,7 +112,7 @@ int exit_after_output(int code);
 bool color_on_stderr();
 bool progress_on_stderr();
 
-// Set by SIGINT, SIGTERM and SIGHUP; a second signal ends the process at once.
+// Set by SIGINT, SIGTERM and SIGHUP; a second signal removes unfinished files and ends the process at once.
 CancelFlag& cancel_flag();
 void catch_signals();
 // Where a standard stream is closed, its number would go to the first file that is opened, and messages into

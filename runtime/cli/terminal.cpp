@@ -1,4 +1,5 @@
 #include "runtime/cli/command.h"
+#include "runtime/core/temporary_files.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -13,10 +14,14 @@ namespace {
 
 CancelFlag cancel;
 
-static_assert(std::atomic<bool>::is_always_lock_free, "the handler may touch nothing else");
+static_assert(std::atomic<bool>::is_always_lock_free, "the handler sets it");
 
+// The first signal ends the work in good order, the second the process; neither leaves a half-written file.
 extern "C" void on_signal(int) {
-  if (cancel.cancelled()) std::_Exit(Exit::cancelled);
+  if (cancel.cancelled()) {
+    remove_temporary_files();
+    std::_Exit(Exit::cancelled);
+  }
   cancel.cancel();
 }
 

@@ -1,6 +1,7 @@
 #include "runtime/core/partial_file.h"
 
 #include "runtime/core/error.h"
+#include "runtime/core/temporary_files.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -33,13 +34,13 @@ PartialFile::PartialFile(const std::string& path) : path_(path), temporary_(temp
     throw WorldError("cannot_write_file", fmt::format("cannot write {}: it is not a regular file", path));
   if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty())
     std::filesystem::create_directories(folder, error);
+  remember_temporary_file(temporary_);
   const int fd = open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (fd < 0) fail(errno);
-  file_ = fdopen(fd, "w+b");
+  if (fd >= 0) file_ = fdopen(fd, "w+b");
   if (file_ == nullptr) {
     const int why = errno;
-    ::close(fd);
-    unlink(temporary_.c_str());
+    if (fd >= 0) ::close(fd), unlink(temporary_.c_str());
+    forget_temporary_file(temporary_);
     fail(why);
   }
   std::setvbuf(file_, nullptr, _IOFBF, std::size_t{1} << 20);
@@ -47,7 +48,9 @@ PartialFile::PartialFile(const std::string& path) : path_(path), temporary_(temp
 
 PartialFile::~PartialFile() {
   if (file_ != nullptr) std::fclose(file_);
-  if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  unlink(temporary_.c_str());
+  forget_temporary_file(temporary_);
 }
 
 void PartialFile::fail(int error) const {
@@ -64,6 +67,7 @@ void PartialFile::commit() {
   const int closed = std::fclose(std::exchange(file_, nullptr));
   if (closed != 0) fail(errno);
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno);
+  forget_temporary_file(temporary_);
   temporary_.clear();
 }
 

@@ -26,7 +26,9 @@ const ImageModule& load() {
   const auto entry = reinterpret_cast<ImageModuleEntry>(dlsym(module, image_module_symbol));
   if (entry == nullptr)
     throw WorldError("no_image_module", fmt::format("{} is not frustum's image library", path.string()));
-  return *entry();
+  const ImageModule& loaded = *entry();
+  include_temporary_files(loaded.temporary_files());
+  return loaded;
 }
 
 std::atomic<bool> is_open{false};

@@ -1,6 +1,7 @@
 // What the image module gives: one object behind one C symbol.
 #pragma once
 
+#include "runtime/core/temporary_files.h"
 #include "runtime/io/image_files.h"
 #include "runtime/io/sink_plan.h"
 
@@ -12,6 +13,7 @@ class ImageModule {
   virtual ImageFile read(const std::string& path, std::string_view name, int subimage) const = 0;
   virtual ImageFile read_bytes(std::string_view bytes, std::string_view name) const = 0;
   virtual std::unique_ptr<Sink> open(const SinkRequest&, const SinkPlan&) const = 0;
+  virtual RemoveTemporaryFiles temporary_files() const = 0;  // of the module's own copy
 };
 
 constexpr const char* image_module_file = "frustum_oiio.so";

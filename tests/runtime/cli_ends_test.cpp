@@ -8,6 +8,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <thread>
 
 #include <sys/stat.h>
@@ -93,8 +94,10 @@ struct Interrupted {
   std::string out, err;
 };
 
-// Starts a program that takes minutes, waits until it is at work, and sends it a signal.
-Interrupted interrupted(std::vector<std::string> arguments, int signal, const TempFolder& folder) {
+// Starts a program that takes minutes, waits until it is at work (until `sign`, if given, holds), and sends it a
+// signal, `times` times a millisecond apart: those that come before the first is handled count as one.
+Interrupted interrupted(std::vector<std::string> arguments, int signal, const TempFolder& folder,
+                        int times = 1, const std::function<bool()>& sign = {}) {
   std::string line = "exec " + quoted(test::frustum_program());
   arguments.insert(arguments.end(), {"--set", "resolution=[2048, 2048]", "--set", "samples=256"});
   for (const std::string& a : arguments) line += " " + quoted(a);
@@ -104,8 +107,13 @@ Interrupted interrupted(std::vector<std::string> arguments, int signal, const Te
     ::execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
     ::_exit(127);
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-  ::kill(child, signal);
+  if (!sign) std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  for (int i = 0; sign && !sign() && i < 3000; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  for (int i = 0; i < times; ++i) {
+    if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ::kill(child, signal);
+  }
   int status = 0;
   ::waitpid(child, &status, 0);
   const auto text = [&](const char* name) { return shell("cat " + quoted(folder.file(name))).out; };
@@ -136,6 +144,17 @@ TEST(CliEnds, ATerminalThatGoesAwayLeavesNoTemporaryFile) {
   if (std::filesystem::exists(folder.file("out"))) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.file("out")));
   }
+}
+
+// The second signal ends the process where it stands, in the middle of a file.
+TEST(CliEnds, ASecondInterruptLeavesNoTemporaryFile) {
+  const TempFolder folder;
+  const std::string out = folder.file("out");
+  const auto begun = [&] { return std::filesystem::exists(out) && !std::filesystem::is_empty(out); };
+  const auto r = interrupted({"run", teapot, "--out", out}, SIGINT, folder, 5, begun);
+  EXPECT_EQ(r.code, 130) << r.err;
+  ASSERT_TRUE(std::filesystem::exists(out)) << r.err;
+  EXPECT_TRUE(std::filesystem::is_empty(out));
 }
 
 // ----- output that nobody gets

@@ -16,6 +16,7 @@ class OiioModule : public frustum::ImageModule {
                                       const frustum::SinkPlan& plan) const override {
     return frustum::oiio::open(request, plan);
   }
+  frustum::RemoveTemporaryFiles temporary_files() const override { return frustum::remove_temporary_files; }
 };
 
 }  // namespace

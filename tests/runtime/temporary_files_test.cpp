@@ -1,0 +1,77 @@
+#include "runtime/core/temporary_files.h"
+
+#include "runtime/core/partial_file.h"
+#include "tests/support/temp_file.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <thread>
+#include <vector>
+
+namespace frustum {
+namespace {
+
+using std::filesystem::exists;
+using std::filesystem::is_empty;
+
+TEST(TemporaryFiles, AreRemovedUntilTheyAreForgotten) {
+  const test::TempFolder folder;
+  const std::string half = folder.write("half", "x"), whole = folder.write("whole", "y");
+  remember_temporary_file(half);
+  remember_temporary_file(whole);
+  remember_temporary_file(folder.file("never made"));
+  forget_temporary_file(whole);
+  remove_temporary_files();
+  EXPECT_FALSE(exists(half));
+  EXPECT_TRUE(exists(whole));
+  // What is removed is forgotten; forgetting it again is no harm.
+  folder.write("half", "z");
+  remove_temporary_files();
+  EXPECT_TRUE(exists(half));
+  for (const char* name : {"half", "never made", "unknown"}) forget_temporary_file(folder.file(name));
+  remember_temporary_file(half);
+  remove_temporary_files();
+  EXPECT_FALSE(exists(half));
+  forget_temporary_file(half);
+}
+
+TEST(TemporaryFiles, OfPartialFilesAreThoseThatAreNotFinished) {
+  const test::TempFolder folder;
+  PartialFile finished(folder.file("finished"));
+  finished.add("a");
+  finished.commit();
+  PartialFile begun(folder.file("begun"));
+  begun.add("b");
+  EXPECT_FALSE(exists(folder.file("begun")));
+  remove_temporary_files();
+  EXPECT_TRUE(exists(folder.file("finished")));
+  std::filesystem::remove(folder.file("finished"));
+  EXPECT_TRUE(is_empty(folder.path()));
+}
+
+// A handler may run while every thread is busy with files.
+TEST(TemporaryFiles, MayBeRemovedWhileOthersAreMade) {
+  const test::TempFolder folder;
+  std::atomic<bool> done{false};
+  std::vector<std::thread> writers;
+  for (int t = 0; t < 4; ++t)
+    writers.emplace_back([&, t] {
+      for (int i = 0; i < 500; ++i) {
+        const std::string name = folder.file(std::to_string(t) + "_" + std::to_string(i % 7));
+        remember_temporary_file(name);
+        forget_temporary_file(name);
+      }
+    });
+  std::thread handler([&] {
+    while (!done) remove_temporary_files();
+  });
+  for (auto& w : writers) w.join();
+  done = true;
+  handler.join();
+  EXPECT_TRUE(is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace frustum
