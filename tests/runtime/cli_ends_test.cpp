@@ -94,8 +94,8 @@ struct Interrupted {
   std::string out, err;
 };
 
-// Starts a program that takes minutes, waits until it is at work (until `sign`, if given, holds), and sends it a
-// signal, `times` times a millisecond apart: those that come before the first is handled count as one.
+// Starts a program that takes minutes, waits until it is at work (until `sign`, if given, holds), and sends it
+// a signal, `times` times a millisecond apart: those that come before the first is handled count as one.
 Interrupted interrupted(std::vector<std::string> arguments, int signal, const TempFolder& folder,
                         int times = 1, const std::function<bool()>& sign = {}) {
   std::string line = "exec " + quoted(test::frustum_program());

@@ -1,6 +1,7 @@
 #include "runtime/io/oiio/reader.h"
 
 #include "runtime/core/error.h"
+#include "runtime/io/oiio/png_check.h"
 #include "runtime/io/primaries.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -46,7 +47,17 @@ std::string one_line(std::string text) {
   return text;
 }
 
+// Leaves the bytes at their beginning.
+void check_png(lib::Filesystem::IOProxy& bytes, const File& file) {
+  const std::string fault =
+      png_fault(bytes.size(), [&](void* to, std::size_t n) { return bytes.read(to, n); });
+  if (!fault.empty()) file.malformed(fault);
+  bytes.seek(0);
+}
+
 std::unique_ptr<lib::ImageInput> open_input(const std::string& path, const File& file) {
+  lib::Filesystem::IOFile bytes(path, lib::Filesystem::IOProxy::Read);
+  check_png(bytes, file);
   lib::ImageSpec hints;
   hints.attribute("oiio:UnassociatedAlpha", 1);  // alpha is multiplied here, in floats and not in bytes
   auto input = lib::ImageInput::open(path, &hints);
@@ -68,6 +79,7 @@ std::unique_ptr<lib::ImageInput> open_memory(lib::Filesystem::IOMemReader& memor
                                              const File& file) {
   const std::string_view format = format_of(bytes);
   if (format.empty()) file.malformed("this is no picture of a kind that is read from memory");
+  check_png(memory, file);
   lib::ImageSpec hints;
   hints.attribute("oiio:UnassociatedAlpha", 1);
   // Named twice: readers forget the one they were made with when they are opened with hints (2.4.7).
