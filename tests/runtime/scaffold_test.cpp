@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -65,6 +66,28 @@ std::vector<std::string> compile_command() {
     return command;
   }
   return {};
+}
+
+// What the page shows as written by the command is what the command writes.
+TEST(NewNode, ThePageShowsItsSource) {
+  std::ostringstream read;
+  read << std::ifstream(std::string(FRUSTUM_SOURCE_DIR) + "/docs/adding_a_node.md").rdbuf();
+  const std::string page = read.str();
+  const std::size_t begin = page.find("\n## The declaration\n"), end = page.find("\n## ", begin + 1);
+  ASSERT_LT(begin, end);
+  ASSERT_NE(end, std::string::npos);
+  const auto files = scaffold("curve.arc", NewNode::geometry);
+  const auto source =
+      std::find_if(files.begin(), files.end(), [](const auto& f) { return f.path.ends_with("arc.cpp"); });
+  ASSERT_NE(source, files.end());
+  const std::string open = "```cpp\n", close = "```\n";
+  int blocks = 0;
+  for (std::size_t at = begin; (at = page.find(open, at)) < end; ++blocks) {
+    at += open.size();
+    EXPECT_THAT(source->text, HasSubstr(page.substr(at, page.find(close, at) - at)));
+  }
+  EXPECT_EQ(blocks, 2);
+  for (const ScaffoldFile& f : files) EXPECT_THAT(page, HasSubstr("`" + f.path + "`"));
 }
 
 class Scaffold : public testing::TestWithParam<NewNode> {};
