@@ -167,8 +167,9 @@ bool DocumentReader::check_buffer_format(const DocumentOutput& output, const std
   if (std::find(names.begin(), names.end(), extension) != names.end()) return true;
   problem({.code = "unknown_extension",
            .pointer = child_pointer(output.pointer, "file"),
-           .message = extension.empty() ? fmt::format("'{}' has no extension that says its format", output.file)
-                                        : fmt::format("'.{}' is not a format that can be written", extension),
+           .message = extension.empty()
+                          ? fmt::format("'{}' has no extension that says its format", output.file)
+                          : fmt::format("'.{}' is not a format that can be written", extension),
            .expected = fmt::format("one of: {}", fmt::join(names, ", ")),
            .got = extension,
            .suggestions = nearest_names(extension, names)});
@@ -189,8 +190,8 @@ void DocumentReader::check_bits(DocumentOutput& output, const Json& j, const Pic
            .pointer = pointer,
            .message = output.whole
                           ? fmt::format("a .{} file has no depth of channels", extension_of(output.file))
-                          : fmt::format("a .{} file has {} bits a channel, not {}", format.extension, expected,
-                                        quoted_json(*bits)),
+                          : fmt::format("a .{} file has {} bits a channel, not {}", format.extension,
+                                        expected, quoted_json(*bits)),
            .expected = expected,
            .got = quoted_json(*bits)});
 }
@@ -207,8 +208,8 @@ void DocumentReader::check_compression(DocumentOutput& output, const Json& j, co
                                                : fmt::format("one of: {}", fmt::join(known, ", "));
   problem({.code = "unknown_choice",
            .pointer = child_pointer(output.pointer, "compression"),
-           .message = fmt::format("'{}' is not a compression of .{} files", output.compression,
-                                  extension_of(output.file)),
+           .message = fmt::format("'{}' is not a compression of .{} files: these take {}", output.compression,
+                                  extension_of(output.file), expected),
            .expected = expected,
            .got = output.compression,
            .suggestions = nearest_names(output.compression, known)});
