@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <utility>
 
 namespace frustum {
 namespace {
@@ -41,18 +43,25 @@ std::string quoted_list(const std::vector<std::string>& names) {
   return out;
 }
 
+std::string_view paint(std::string_view code, bool color) { return color ? code : std::string_view{}; }
+
+// "error[unknown_type]"
+std::string heading(Severity severity, std::string_view code, bool color) {
+  return fmt::format("{}{}[{}]{}", paint(severity == Severity::error ? red : yellow, color),
+                     name_of(severity), code, paint(off, color));
+}
+
 void append_text(std::string& out, const Diagnostic& d, bool color) {
-  const auto paint = [color](std::string_view code) { return color ? code : std::string_view{}; };
   const std::string where = place(d.file, d.line, d.column, d.pointer);
-  out += fmt::format("{}{}[{}]{}{}{}{}{}\n", paint(d.severity == Severity::error ? red : yellow),
-                     name_of(d.severity), d.code, paint(off), where.empty() ? "" : " ", paint(bold), where,
-                     paint(off));
+  out += fmt::format("{}{}{}{}{}\n", heading(d.severity, d.code, color), where.empty() ? "" : " ",
+                     paint(bold, color), where, paint(off, color));
   out += fmt::format("  {}\n", printable(d.message));
   for (const Related& r : d.related)
     out += fmt::format("  {}: {}\n", place(r.file.empty() ? d.file : r.file, r.line, r.column, r.pointer),
                        printable(r.message));
   if (!d.suggestions.empty())
-    out += fmt::format("  did you mean {}{}{}?\n", paint(green), quoted_list(d.suggestions), paint(off));
+    out += fmt::format("  did you mean {}{}{}?\n", paint(green, color), quoted_list(d.suggestions),
+                       paint(off, color));
 }
 
 Json to_json(const Related& r) {
@@ -106,7 +115,8 @@ std::size_t same_scope(std::string_view a, std::string_view b) {
   return same;
 }
 
-// Whether so few edits make a name that was meant and not only another short one.
+// Whether so few edits make a name that was meant and not only another short one: fewer than half the letters
+// of the longer, without the scope that both share; of one or two letters, one edit that changes a letter.
 bool is_near(std::string_view name, std::string_view known, std::size_t count) {
   const std::size_t same = same_scope(name, known);
   if (name.size() - same < 3) return count == 1 && name.size() == known.size();
@@ -121,8 +131,15 @@ bool Diagnostics::has_errors() const {
 }
 
 std::string to_text(const Diagnostics& diagnostics, bool color) {
+  constexpr std::size_t most = 20;
+  std::map<std::pair<Severity, std::string_view>, std::size_t> seen;
   std::string out;
-  for (const Diagnostic& d : diagnostics.list()) append_text(out, d, color);
+  for (const Diagnostic& d : diagnostics.list())
+    if (++seen[{d.severity, d.code}] <= most) append_text(out, d, color);
+  for (const auto& [kind, times] : seen)
+    if (times > most)
+      out += fmt::format("{} and {} more; --json names them all\n", heading(kind.first, kind.second, color),
+                         times - most);
   return out;
 }
 

@@ -41,6 +41,22 @@ TEST(Diagnostics, TextOfAWarningWithoutAFileHasNoEmptyParts) {
   EXPECT_FALSE(d.has_errors());
 }
 
+TEST(Diagnostics, TextShowsTwentyOfACodeAndCountsTheRest) {
+  Diagnostics d;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string pointer = "/nodes/n" + std::to_string(i);
+    d.add({.code = "unused_node", .severity = Severity::warning, .pointer = pointer, .message = "not read"});
+    if (i < 20) d.add({.code = "unknown_type", .pointer = pointer, .message = "no type"});
+  }
+  const std::string text = to_text(d);
+  EXPECT_NE(text.find("/nodes/n19\n  not read"), std::string::npos);
+  EXPECT_NE(text.find("/nodes/n19\n  no type"), std::string::npos);
+  EXPECT_EQ(text.find("/nodes/n20"), std::string::npos);
+  EXPECT_TRUE(text.ends_with("warning[unused_node] and 980 more; --json names them all\n")) << text;
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2 * 40 + 1);
+  EXPECT_EQ(to_json(d)["diagnostics"].size(), 1020u);
+}
+
 TEST(Diagnostics, ColourWrapsOnlyWhatPlainTextHas) {
   std::string colored = to_text(one(), true);
   EXPECT_NE(colored.find("\x1b[1;31merror[unknown_type]\x1b[0m"), std::string::npos);
