@@ -51,7 +51,7 @@ class Diagnostics {
   std::vector<Diagnostic> list_;
 };
 
-// The text form, one block a diagnostic:
+// The text form, one block a diagnostic; of a code and severity 20 blocks, then a line that counts the rest:
 //   error[unknown_type] teapot.json:17:24 /nodes/cut/type
 //     'clip.homogenous' is not a node type
 //     did you mean 'clip.homogeneous'?
@@ -64,8 +64,8 @@ Json to_json(const Diagnostics&);
 std::string child_pointer(std::string_view pointer, std::string_view key);
 std::string child_pointer(std::string_view pointer, std::size_t index);
 
-// The names nearest to `name` by optimal string alignment (a swap of neighbours counts one), nearest first, at most
-// three; only those within max(1, length / 3) edits. Empty where nothing is near.
+// At most three names, nearest first, none more than one edit farther than the first (a swap of neighbours is one edit).
+// Near are those within max(1, length / 3) edits that is_near (diagnostic.cpp) takes for meant; empty where none is.
 std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> known);
 
 }  // namespace frustum
