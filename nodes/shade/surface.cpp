@@ -5,6 +5,7 @@
 #include "runtime/buffers/light.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/real_rows.h"
+#include "runtime/buffers/transparency.h"
 #include "runtime/core/node_type.h"
 
 #include <tbb/parallel_for.h>
@@ -193,12 +194,24 @@ void light_vertices(Shader<R>& shader, const Mesh& mesh, const Context& ctx) {
   });
 }
 
+// By face; empty where all are opaque.
+template <class R>
+std::vector<R> opacities(const Mesh& mesh) {
+  const Column* transparency = transparency_of(mesh);
+  std::vector<R> opacity;
+  if (transparency == nullptr) return opacity;
+  for (std::size_t f = 0; f < mesh.faces(); ++f)
+    opacity.push_back(std::clamp(R(1) - static_cast<R>(transparency->number(f, 0)), R(0), R(1)));
+  return opacity;
+}
+
 template <class R>
 Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
   using V3 = glm::vec<3, R>;
   Shader<R> shader{make_scene<R>(in, p), {}, false, {}};
   Scene<R>& s = shader.scene;
   const Mesh& mesh = *in.mesh;
+  s.opacity = opacities<R>(mesh);
   if (std::any_of(s.surfaces.begin(), s.surfaces.end(), [](const auto& of) { return of.two_sided; })) {
     const Ref<Column> world = world_positions<R>(mesh);
     const auto q = world->values<V3>();
@@ -423,7 +436,9 @@ class Filler {
   void shade_samples(int y) {
     for (std::size_t k = 0; k < samples_; ++k) {
       const auto number = [&](std::size_t i) { return row_[i * samples_ + k]; };
-      shade_row(shader_.scene, point_row<R>(s_, id_[k], number), n_, scratch_, out_rows(k, y));
+      const kernels::ColorRows<R> out = out_rows(k, y);
+      shade_row(shader_.scene, point_row<R>(s_, id_[k], number), n_, scratch_, out);
+      fade_row(shader_.scene, id_[k], n_, out);
     }
   }
 
@@ -437,6 +452,7 @@ class Filler {
     const PointRow<R> means = point_row<R>(s_, face_.data(), [&](std::size_t i) { return mean_[i]; });
     while (take_face_row<R>(left_.data(), samples_, n_, row_, face_.data(), mean_)) {
       shade_row(shader_.scene, means, n_, scratch_, color_);
+      fade_row(shader_.scene, face_.data(), n_, color_);
       for (std::size_t k = 0; k < samples_; ++k)
         put_face_row(id_[k], face_.data(), n_, color_, out_rows(k, y));
     }
@@ -494,8 +510,9 @@ NodeType nodes::shade_surface() {
       .knob({"pixel", "sample"}, "Light varies little within a pixel, except in highlights smaller than one.")
       .param("two_sided", &Params::two_sided,
              "Whether all faces, not just those of two-sided materials, are lit as if turned to the camera.")
-      .output("color", &Outputs::color,
-              "Linear Rec.709, premultiplied; alpha 1 where a point is seen, 0 elsewhere.");
+      .output(
+          "color", &Outputs::color,
+          "Linear Rec.709, premultiplied; alpha is the face's opacity where a point is seen, 0 elsewhere.");
 }
 
 }  // namespace frustum

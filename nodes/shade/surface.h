@@ -37,6 +37,7 @@ struct Scene {
   std::vector<Surface<R>> surfaces;       ///< at least one
   std::vector<std::uint32_t> surface_of;  ///< by face; empty: all have the first
   std::vector<R> side;                    ///< by face +1, or -1 where the eye sees its back; empty: all +1
+  std::vector<R> opacity;                 ///< by face, in [0, 1]; empty: all 1
 
   kernels::LightSetup<R> setup(const Surface<R>& s) const { return {lights, eye, s.highlight, s.exponent}; }
   const Surface<R>& surface(std::size_t face) const {
@@ -161,7 +162,16 @@ struct PointRow {
   std::array<const R*, 3> albedo{};
 };
 
-/// Colours of a row; transparent black where nothing is seen.
+/// Scales a row's premultiplied colours by the opacity of the face that each shows; nothing seen stays nothing.
+template <std::floating_point R>
+void fade_row(const Scene<R>& s, const std::uint32_t* id, std::size_t n, const kernels::ColorRows<R>& out) {
+  if (s.opacity.empty()) return;
+  for (R* plane : out.plane)
+    for (std::size_t x = 0; x < n && plane != nullptr; ++x)
+      if (id[x] < s.opacity.size()) plane[x] *= s.opacity[id[x]];
+}
+
+/// Colours of a row of opaque faces; transparent black where nothing is seen.
 template <std::floating_point R>
 void shade_row(const Scene<R>& s, const PointRow<R>& in, std::size_t n, const RowScratch<R>& scratch,
                const kernels::ColorRows<R>& out) {

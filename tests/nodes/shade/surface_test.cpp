@@ -92,6 +92,31 @@ TEST(ShadeSurface, KeepsTheLawOfTilesInEveryMode) {
       }
 }
 
+// A quarter is a power of two: the colours of the opaque picture, exactly.
+TEST(ShadeSurface, OpacityScalesColourAndAlpha) {
+  const Shot shot = sphere(33, 4);
+  auto mesh = std::make_shared<Mesh>(*shot.mesh);
+  const float transparency[2] = {0, 0.75F};
+  mesh->columns.push_back(Column::make<float>("transparency", Domain::face, transparency));
+  const auto lit = [&](const Ref<Mesh>& seen, const char* rate, bool one_material) {
+    test::NodeInputs in{{"points", {shot.points}}, {"mesh", {seen}}, {"lights", {directional({0, 0, -1})}}};
+    if (one_material) in["material"] = {white()};
+    return test::PixelRun(nodes::shade_surface(), std::string(R"({"rate": ")") + rate + R"("})", in).whole();
+  };
+  for (const char* rate : {"sample", "pixel"})
+    for (const bool one_material : {false, true}) {
+      const Raster opaque = lit(shot.mesh, rate, one_material), some = lit(mesh, rate, one_material);
+      for (int s = 0; s < 4; ++s)
+        for (int y = 0; y < 33; ++y)
+          for (int x = 0; x < 33; ++x)
+            for (int c = 0; c < 4; ++c) {
+              const bool second = shot.points->raster.at<std::uint32_t>(0, s, x, y) == 1;
+              ASSERT_EQ(some.at<float>(c, s, x, y), opaque.at<float>(c, s, x, y) * (second ? 0.25F : 1.0F))
+                  << rate;
+            }
+    }
+}
+
 TEST(ShadeSurface, LambertIsTheCosineAndAlphaIsCoverage) {
   const Shot shot = sphere(64, 1);
   const Raster image = test::PixelRun(nodes::shade_surface(), "{}",

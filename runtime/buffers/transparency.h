@@ -1,0 +1,22 @@
+// How much of what lies behind a face shows through it: a column of the mesh, so that it goes where faces go.
+#pragma once
+
+#include "runtime/buffers/mesh.h"
+
+namespace frustum {
+
+// One real number a face, 0 (opaque) to 1 (not there). A mesh without it is opaque, and so are the faces of parts
+// without it when meshes are merged.
+constexpr std::string_view transparency_column = "transparency";
+
+// The column, or null where no face has one. Throws NodeError("wrong_column") where it is not one real number a face.
+inline const Column* transparency_of(const Mesh& mesh) {
+  const Column* c = mesh.find(transparency_column);
+  if (c == nullptr) return nullptr;
+  const bool real = c->kind() == NumberKind::f32 || c->kind() == NumberKind::f64;
+  if (c->domain() != Domain::face || c->width() != 1 || !real)
+    throw NodeError("wrong_column", "column transparency is one real number a face", at_input("mesh"));
+  return c;
+}
+
+}  // namespace frustum
