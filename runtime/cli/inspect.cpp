@@ -2,6 +2,7 @@
 // came from.
 #include "runtime/app/export.h"
 #include "runtime/app/provenance.h"
+#include "runtime/buffers/fragments.h"
 #include "runtime/cli/command.h"
 #include "runtime/core/text.h"
 
@@ -162,20 +163,35 @@ int show_provenance(Session& session, const Graph& graph, PortRef port, const Ar
   return done;
 }
 
+// The fragments of all samples of a pixel: rows of the buffer's table.
+Json pixel_lists(const Buffer& buffer, const Fragments& lists, int x, int y) {
+  const auto [begin, end] = lists.of_pixel(x, y);
+  return table_json(buffer, begin, end - begin);
+}
+
+Rect window_of(const Buffer& buffer, const std::string& port) {
+  if (const auto lists = buffer.as<Fragments>()) return lists->window;
+  if (!buffer.type().is_pixels()) throw NodeError("not_pixels", fmt::format("{} holds no pixels", port));
+  return buffer.type().raster(buffer.data()).frame().window;
+}
+
 int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Arguments& args,
                 const Diagnostics& warnings, bool json) {
   Json out = header_json(graph.name(port), buffer);
   std::string text;
   if (!args.pixel.empty()) {
     const auto at = integers("--pixel", args.pixel, 2);
-    const Raster* raster = buffer.type().is_pixels() ? &buffer.type().raster(buffer.data()) : nullptr;
-    if (raster == nullptr) throw NodeError("not_pixels", fmt::format("{} holds no pixels", graph.name(port)));
-    if (!raster->frame().window.contains(at[0], at[1]))
+    if (!window_of(buffer, graph.name(port)).contains(at[0], at[1]))
       throw NodeError("outside_window", fmt::format("pixel {},{} lies outside the picture", at[0], at[1]));
-    out["pixel"] = pixel_json(buffer, at[0], at[1]);
-    text += object_table(out["pixel"]["samples"], 0);
+    if (const auto lists = buffer.as<Fragments>()) {
+      out["pixel"] = pixel_lists(buffer, *lists, at[0], at[1]);
+      text += table_text(out["pixel"], lists->of_pixel(at[0], at[1]).begin);
+    } else {
+      out["pixel"] = pixel_json(buffer, at[0], at[1]);
+      text += object_table(out["pixel"]["samples"], 0);
+    }
   }
-  if (args.table) {
+  if (args.table && (args.pixel.empty() || !buffer.is<Fragments>())) {
     out["table"] = table_json(buffer, args.first, args.rows);
     text += table_text(out["table"], args.first);
   }
@@ -232,7 +248,8 @@ void add_inspect(CLI::App& app, Invocation& chosen) {
   c.add_option("port", args->port, "A port, a node (its first output) or an output of the graph.")
       ->required()
       ->type_name("NODE.PORT");
-  c.add_option("--pixel", args->pixel, "Every plane of every sample of one pixel.")->type_name("X,Y");
+  c.add_option("--pixel", args->pixel, "Every plane of every sample of one pixel, or its lists of fragments.")
+      ->type_name("X,Y");
   c.add_option("--provenance", args->provenance,
                "The pixel's samples, their triangles, and the node that made them.")
       ->type_name("X,Y");

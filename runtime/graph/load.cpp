@@ -97,6 +97,8 @@ class Builder {
       int budget = 1000000;
       for (const Edge& edge : follow(*flat_.top, layer.from, problems_, budget)) {
         check_layer(output, edge);
+        const BufferType* kind = facts_of(flat_, checked_, edge).kind;
+        out.whole = out.whole || (kind != nullptr && !kind->is_pixels() && is_saved_whole(output, *kind));
         if (const auto from = port_of(edge)) out.layers.push_back({layer.name, *from});
       }
     }
@@ -122,11 +124,21 @@ class Builder {
     }
   }
 
+  std::vector<std::string> forms_of(const BufferType& kind) const {
+    return options_.saved_as ? options_.saved_as(kind) : std::vector<std::string>();
+  }
+  // A kind that is no picture may have a form in a format of pictures: fragments are saved as deep EXR.
+  bool is_saved_whole(const DocumentOutput& output, const BufferType& kind) const {
+    const std::vector<std::string> forms = forms_of(kind);
+    const bool plain = output.layers.size() == 1 && output.layers[0].name.empty() && output.bits == 0 &&
+                       output.compression.empty();
+    return (plain || output.whole) &&
+           std::find(forms.begin(), forms.end(), extension_of(output.file)) != forms.end();
+  }
+
   void check_kind(const DocumentOutput& output, const Edge& edge, const BufferType& kind) {
-    const std::vector<std::string> forms =
-        options_.saved_as ? options_.saved_as(kind) : std::vector<std::string>();
-    const bool saved = std::find(forms.begin(), forms.end(), extension_of(output.file)) != forms.end();
-    if (output.whole ? saved : kind.is_pixels()) return;
+    const std::vector<std::string> forms = forms_of(kind);
+    if ((kind.is_pixels() && !output.whole) || is_saved_whole(output, kind)) return;
     report(problems_, *doc_.text,
            {.code = "wrong_type",
             .pointer = edge.link->pointer,

@@ -2,6 +2,7 @@
 
 #include "runtime/core/error.h"
 #include "runtime/core/partial_file.h"
+#include "runtime/io/deep_files.h"
 #include "runtime/io/mesh_writers.h"
 
 #include <fmt/format.h>
@@ -82,6 +83,7 @@ std::string csv_row(const Json& cells) {
 std::vector<std::string> saved_as(const BufferType& kind) {
   std::vector<std::string> out;
   if (&kind == &buffer_type<Mesh>()) out = {"ply", "obj", "glb", "gltf"};
+  if (&kind == &buffer_type<Fragments>()) out = {"exr"};
   if (kind.table != nullptr) out.emplace_back("csv");
   out.emplace_back("json");
   return out;
@@ -96,6 +98,7 @@ void save_buffer_file(const Buffer& buffer, const SaveRequest& request) {
   if (std::find(known.begin(), known.end(), kind) == known.end())
     throw NodeError("unknown_format", fmt::format("{}: a {} is saved as {}", request.path, buffer.type().name,
                                                   fmt::join(known, ", ")));
+  if (kind == "exr") return write_deep_file(*buffer.as<Fragments>(), request);
   PartialFile file(request.path);
   if (kind == "json")
     write_json(buffer, request, file);

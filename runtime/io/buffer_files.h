@@ -20,6 +20,7 @@ std::string csv_row(const Json& cells);
 // file is whole.
 //
 //   .ply .obj .glb .gltf   a mesh (mesh_writers.h)
+//   .exr                   fragments, one list a pixel: deep scanlines (deep_files.h)
 //   .csv                   the table form: RFC 4180 with a line of column names; numbers in the shortest text
 //                          that reads back to the same value
 //   .json                  {"format": "frustum.buffer/1", "type", "graph", "summary", "columns", "rows",

@@ -33,12 +33,6 @@ const ImageModule& load() {
 
 std::atomic<bool> is_open{false};
 
-const ImageModule& image_module() {
-  static const ImageModule& loaded = load();
-  is_open = true;
-  return loaded;
-}
-
 // Programs show the numbers of these formats as they are, so linear light looks too dark.
 void warn_of_linear_colors(const SinkRequest& request, const SinkPlan& plan) {
   if (!request.warn || (plan.format != "png" && plan.format != "jpeg")) return;
@@ -56,6 +50,11 @@ void warn_of_linear_colors(const SinkRequest& request, const SinkPlan& plan) {
 
 }  // namespace
 
+const ImageModule& image_module() {
+  static const ImageModule& loaded = load();
+  is_open = true;
+  return loaded;
+}
 void open_image_module() { image_module(); }
 bool image_module_is_open() { return is_open; }
 

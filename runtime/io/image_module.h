@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/core/temporary_files.h"
+#include "runtime/io/deep_files.h"
 #include "runtime/io/image_files.h"
 #include "runtime/io/sink_plan.h"
 
@@ -14,7 +15,13 @@ class ImageModule {
   virtual ImageFile read_bytes(std::string_view bytes, std::string_view name) const = 0;
   virtual std::unique_ptr<Sink> open(const SinkRequest&, const SinkPlan&) const = 0;
   virtual RemoveTemporaryFiles temporary_files() const = 0;  // of the module's own copy
+  virtual Fragments read_deep(const std::string& path, std::string_view name, int part,
+                              const std::function<void(std::uint64_t bytes)>& claim) const = 0;
+  virtual void write_deep(const Fragments&, const SaveRequest&) const = 0;
 };
+
+// The module, opened at the first call. Throws WorldError("no_image_module").
+const ImageModule& image_module();
 
 constexpr const char* image_module_file = "frustum_oiio.so";
 constexpr const char* image_module_symbol = "frustum_image_module";

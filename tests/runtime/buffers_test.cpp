@@ -1,4 +1,5 @@
 // Buffers as evidence: health, statistics, digests and tables of every kind.
+#include "runtime/buffers/fragments.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/light.h"
 #include "runtime/buffers/mesh.h"
@@ -270,7 +271,7 @@ TEST(Values, EveryKindIsDescribed) {
        {&buffer_type<Mesh>(), &buffer_type<Image>(), &buffer_type<Depth>(), &buffer_type<Visibility>(),
         &buffer_type<SamplePattern>(), &buffer_type<Camera>(), &buffer_type<LightSet>(),
         &buffer_type<Material>(), &buffer_type<Texture>(), &buffer_type<Surface>(), &buffer_type<Number>(),
-        &buffer_type<Matrix>(), &buffer_type<Table>()}) {
+        &buffer_type<Matrix>(), &buffer_type<Table>(), &buffer_type<Fragments>()}) {
     EXPECT_FALSE(t->name.empty());
     EXPECT_TRUE(t->doc.ends_with('.')) << t->name;
     EXPECT_THAT(std::string(t->color), testing::MatchesRegex("#[0-9a-f]{6}")) << t->name;

@@ -1,4 +1,5 @@
 #include "runtime/io/image_module.h"
+#include "runtime/io/oiio/deep.h"
 #include "runtime/io/oiio/reader.h"
 #include "runtime/io/oiio/writer.h"
 
@@ -17,6 +18,13 @@ class OiioModule : public frustum::ImageModule {
     return frustum::oiio::open(request, plan);
   }
   frustum::RemoveTemporaryFiles temporary_files() const override { return frustum::remove_temporary_files; }
+  frustum::Fragments read_deep(const std::string& path, std::string_view name, int part,
+                              const std::function<void(std::uint64_t bytes)>& claim) const override {
+    return frustum::oiio::read_deep(path, name, part, claim);
+  }
+  void write_deep(const frustum::Fragments& fragments, const frustum::SaveRequest& request) const override {
+    frustum::oiio::write_deep(fragments, request);
+  }
 };
 
 }  // namespace

@@ -101,7 +101,7 @@ void check_size(const lib::ImageSpec& s, std::uint64_t file_bytes, const File& f
 }
 
 void check_spec(const lib::ImageSpec& s, const File& file) {
-  if (s.deep) file.malformed("deep pictures (many depths a pixel) are not read");
+  if (s.deep) file.malformed("this is a deep picture (many depths a pixel): io.load_fragments reads it");
   if (s.depth > 1) file.malformed("this is a volume, not a picture");
   if (s.width <= 0 || s.height <= 0 || s.nchannels <= 0) file.malformed("the picture has no pixels");
 }

@@ -1,0 +1,199 @@
+#include "nodes/io/load_fragments.h"
+
+#include "nodes/io.h"
+#include "runtime/io/buffer_files.h"
+#include "runtime/io/deep_files.h"
+#include "tests/support/run_node.h"
+#include "tests/support/temp_file.h"
+#include "tests/support/ulps.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <limits>
+#include <sstream>
+
+namespace frustum {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string data = std::string(FRUSTUM_SOURCE_DIR) + "/graphs/data";
+
+// Lists of 0 to 4 fragments over a window that does not begin at 0, 0.
+Fragments lists() {
+  test::Random random(3);
+  Fragments f{.window = {-3, 2, 14, 13}, .color_space = "lin_rec709"};
+  for (std::int64_t i = 0; i < f.window.area(); ++i) f.first.push_back(f.first.back() + random.below(5));
+  const auto id = Column::make<std::uint32_t>("id", Domain::vertex, f.count());
+  for (auto& v : id->values<std::uint32_t>()) v = static_cast<std::uint32_t>(random.bits());
+  f.channels.push_back(id);
+  for (const char* name : {"Z", "R", "G", "B", "A", "N.x"}) {
+    const auto c = Column::make<float>(name, Domain::vertex, f.count());
+    for (float& v : c->values<float>()) v = static_cast<float>(random.uniform());
+    f.channels.push_back(c);
+  }
+  return f;
+}
+
+Fragments sorted(Fragments f) {
+  std::uint64_t unsorted = 0;
+  return in_order_of_depth(std::move(f), unsorted);
+}
+
+void expect_same(const Fragments& a, const Fragments& b) {
+  EXPECT_EQ(a.window, b.window);
+  EXPECT_EQ(a.first, b.first);
+  EXPECT_EQ(a.color_space, b.color_space);
+  ASSERT_EQ(a.channels.size(), b.channels.size());
+  for (const Ref<Column>& c : a.channels) {
+    const Column* other = b.find(c->name());
+    ASSERT_NE(other, nullptr) << c->name();
+    EXPECT_EQ(c->kind(), other->kind()) << c->name();
+    EXPECT_EQ(std::memcmp(c->data(), other->data(), c->bytes()), 0) << c->name();
+  }
+}
+
+Ref<Fragments> load(const std::string& file, Context* ctx = nullptr, const std::string& folder = data) {
+  return test::run_node(nodes::io_load_fragments(), {{"file", file}}, {}, ctx, folder)[0].as<Fragments>();
+}
+
+std::string saved(const Fragments& f, const test::TempFolder& folder) {
+  const std::string path = folder.file("deep.exr");
+  save_buffer_file(Ref<Fragments>(std::make_shared<const Fragments>(f)), {.path = path});
+  return path;
+}
+
+std::string bytes_of_file(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+TEST(LoadFragments, ReadsBackWhatWasWritten) {
+  const test::TempFolder folder;
+  const Fragments written = sorted(lists());
+  Context ctx;
+  saved(written, folder);
+  expect_same(written, *load("deep.exr", &ctx, folder.path()));
+  EXPECT_TRUE(ctx.warnings().empty());
+  const std::string first = bytes_of_file(folder.file("deep.exr"));
+  saved(*load("deep.exr", nullptr, folder.path()), folder);
+  // The order of channels is the file's: by name. All else is the same, and no date is written.
+  EXPECT_EQ(bytes_of_file(folder.file("deep.exr")), first);
+}
+
+TEST(LoadFragments, PutsListsInTheOrderOfDepthAndSaysSo) {
+  const test::TempFolder folder;
+  const Fragments unsorted = lists();
+  saved(unsorted, folder);
+  Context ctx;
+  const Ref<Fragments> f = load("deep.exr", &ctx, folder.path());
+  expect_same(sorted(unsorted), *f);
+  const auto z = f->find("Z")->values<float>();
+  for (std::size_t i = 0; i < f->lists(); ++i)
+    for (std::size_t k = f->of_list(i).begin; k + 1 < f->of_list(i).end; ++k) ASSERT_LE(z[k], z[k + 1]);
+  ASSERT_EQ(ctx.warnings().size(), 1u);
+  EXPECT_EQ(ctx.warnings()[0].first, "fragments_sorted");
+}
+
+TEST(LoadFragments, EqualDepthsKeepTheirOrderAndNaNIsLast) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> z{nan, 2, 1, 2, 1};
+  const std::vector<std::uint32_t> id{0, 1, 2, 3, 4};
+  Fragments f{.window = {0, 0, 1, 1}, .first = {0, 5}};
+  f.channels = {Column::make<float>("Z", Domain::vertex, z),
+                Column::make<std::uint32_t>("id", Domain::vertex, id)};
+  const Fragments in_order = sorted(std::move(f));
+  EXPECT_THAT(in_order.find("id")->values<std::uint32_t>(), testing::ElementsAre(2, 4, 1, 3, 0));
+}
+
+TEST(LoadFragments, RangesOfDepthThatOverlapAreCounted) {
+  const std::vector<float> z{1, 2, 1, 2}, back{2, 3, 2.5F, 3};
+  Fragments f{.window = {0, 0, 2, 1}, .first = {0, 2, 4}};
+  f.channels = {Column::make<float>("Z", Domain::vertex, z),
+                Column::make<float>("ZBack", Domain::vertex, back)};
+  EXPECT_EQ(overlapping_lists(f), 1u);
+}
+
+// Made with OpenEXR's own tiled writer: 24 x 17 pixels in tiles of 8 x 8, (x + y) mod 4 fragments, half colours.
+TEST(LoadFragments, ReadsTilesAsItReadsRows) {
+  const Ref<Fragments> f =
+      load("deep_tiles.exr", nullptr, std::string(FRUSTUM_SOURCE_DIR) + "/tests/nodes/io");
+  ASSERT_EQ(f->window, (Rect{5, -2, 29, 15}));
+  for (int y = -2; y < 15; ++y)
+    for (int x = 5; x < 29; ++x) {
+      const auto [begin, end] = f->of_pixel(x, y);
+      ASSERT_EQ(end - begin, static_cast<std::size_t>((x + y + 4) % 4)) << x << ", " << y;
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto layer = static_cast<float>(i - begin);
+        ASSERT_EQ(f->find("Z")->values<float>()[i], 1 + layer);
+        ASSERT_EQ(f->find("R")->values<float>()[i], static_cast<float>(x) / 32);
+        ASSERT_EQ(f->find("A")->values<float>()[i], 0.5F);
+        ASSERT_EQ(f->find("id")->values<std::uint32_t>()[i], static_cast<std::uint32_t>(100 * (y + 2) + x));
+      }
+    }
+}
+
+TEST(LoadFragments, SaysWhatIsWrongWithAFile) {
+  const test::TempFolder folder;
+  const auto problem = [&](const std::string& file, const std::string& where) {
+    return test::run_error(nodes::io_load_fragments(), {{"file", file}}, {}, where);
+  };
+  EXPECT_EQ(problem("card.png", data).first, "malformed_file");
+  EXPECT_EQ(problem("nothing.exr", data).first, "cannot_read_file");
+  EXPECT_EQ(problem("", data).first, "no_file");
+  const std::string whole = bytes_of_file(saved(lists(), folder));
+  folder.write("cut.exr", std::string_view(whole).substr(0, whole.size() / 2));
+  const auto cut = problem("cut.exr", folder.path());
+  EXPECT_EQ(cut.first, "malformed_file");
+  EXPECT_THAT(cut.second, HasSubstr("cut.exr"));
+}
+
+// Every byte of the header and many of the rest in turn: the file is read or refused, and what it makes the reader take
+// is bounded by its size.
+TEST(LoadFragments, LiesAreRefusedBeforeTheirMemoryIsTaken) {
+  const test::TempFolder folder;
+  const std::string whole = bytes_of_file(saved(sorted(lists()), folder));
+  test::Random random(1);
+  std::size_t refused = 0, read = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::string bad = whole;
+    const std::size_t at = i < 250 ? random.below(900) : random.below(bad.size());
+    for (int k = 0; k < 4 && at + static_cast<std::size_t>(k) < bad.size(); ++k)
+      if (k == 0 || random.below(2) == 0)
+        bad[at + static_cast<std::size_t>(k)] = static_cast<char>(random.bits());
+    const std::string path = folder.write("bad.exr", bad);
+    std::uint64_t claimed = 0;
+    try {
+      const Fragments f = read_deep_file(path, "bad.exr", 0, [&](std::uint64_t bytes) { claimed += bytes; });
+      EXPECT_EQ(fault_of(f), "");
+      ++read;
+    } catch (const NodeError& e) {
+      EXPECT_THAT(e.code, testing::AnyOf("malformed_file", "not_deep"));
+      EXPECT_THAT(e.what(), HasSubstr("bad.exr"));
+      ++refused;
+    }
+    // Counts, places and channels of pixels, each of which the file's bytes could hold, then the fragments.
+    ASSERT_LE(claimed, (bad.size() * 1032 + (1 << 20)) * 24) << "byte " << at;
+  }
+  EXPECT_GT(refused, 50u);
+  EXPECT_GT(read, 50u);
+}
+
+TEST(LoadFragments, SeveralSamplesAPixelDoNotGoIntoTheFormat) {
+  const test::TempFolder folder;
+  Fragments f{.window = {0, 0, 1, 1}, .first = {0, 0, 0}};
+  SamplePattern two{2, 1, {0, 1}, {0, 1}};
+  f.pattern = std::make_shared<const SamplePattern>(two);
+  try {
+    saved(f, folder);
+    ADD_FAILURE() << "two lists a pixel";
+  } catch (const NodeError& e) {
+    EXPECT_EQ(e.code, "format_cannot_hold");
+  }
+}
+
+}  // namespace
+}  // namespace frustum
