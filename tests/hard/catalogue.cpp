@@ -105,7 +105,7 @@ const stability::CatalogueRow catalogue_rows[] = {
     {"ZBF-02", depth_stage, "interpenetrating near-parallel planes", false},
     {"ZBF-03", depth_stage, "huge depth slope", false},
     {"ZBF-04", depth_stage, "slope-scaled bias with infinite slope", false, "the depth bias"},
-    {"ZBF-05", depth_stage, "A-buffer: 1000 translucent layers", true, "the A-buffer"},
+    {"ZBF-05", depth_stage, "A-buffer: 1000 translucent layers", true},
     {"ZBF-07", depth_stage, "mean of a fragment list", false},
     {"ZBF-08", depth_stage, "NaN and -0 depth", true},
     {"ZBF-09", depth_stage, "unpremultiply at alpha~0", false},

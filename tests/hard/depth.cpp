@@ -1,5 +1,6 @@
 // Z-buffer and A-buffer.
 #include "nodes/color/convert.h"
+#include "nodes/kernels/simd/composite.h"
 #include "nodes/kernels/sum.h"
 #include "tests/hard/exact.h"
 #include "tests/hard/screen.h"
@@ -194,6 +195,52 @@ void without_coverage(Trial& t) {
       });
 }
 
+// Layers of one pixel, premultiplied: colour in [0, alpha], alpha up to 2e-3.
+struct ThinLayers {
+  std::vector<float> color, alpha;
+};
+
+ThinLayers thin_layers(Trial& t, std::size_t n) {
+  ThinLayers l;
+  for (; n > 0; --n) {
+    l.alpha.push_back(static_cast<float>(t.random.uniform(0, 2e-3)));
+    l.color.push_back(l.alpha.back() * static_cast<float>(t.random.uniform(0, 1)));
+  }
+  return l;
+}
+
+// c = c + (1 - a) c_next from the front, as it is written in textbooks, in float.
+float over_in_float(const ThinLayers& l) {
+  float color = 0, alpha = 0;
+  for (std::size_t i = 0; i < l.alpha.size(); ++i) {
+    color += (1 - alpha) * l.color[i];
+    alpha += (1 - alpha) * l.alpha[i];
+  }
+  return color;
+}
+
+float put_behind_all(const ThinLayers& l) {
+  double through = 1, red = 0, green = 0, blue = 0, alpha = 0;
+  const kernels::CompositeSums sums{1, &through, &red, &green, &blue, &alpha};
+  for (std::size_t i = 0; i < l.alpha.size(); ++i)
+    kernels::simd::put_behind(&l.color[i], &l.color[i], &l.color[i], &l.alpha[i], sums);
+  return static_cast<float>(red);
+}
+
+void thousand_layers(Trial& t) {
+  constexpr std::size_t layers = 1000;
+  for (std::size_t n = t.samples(20, 400); n-- > 0;) {
+    const ThinLayers l = thin_layers(t, layers);
+    Real exact;  // from the back
+    for (std::size_t i = layers; i-- > 0;)
+      exact =
+          Real(static_cast<double>(l.color[i])) + (Real(1.0) - Real(static_cast<double>(l.alpha[i]))) * exact;
+    t.measure(ulps(over_in_float(l), exact), ulps(put_behind_all(l), exact), {l.color[0], l.alpha[0]});
+  }
+  const ThinLayers l = thin_layers(t, layers);
+  t.price([&] { keep(over_in_float(l)); }, [&] { keep(put_behind_all(l)); });
+}
+
 void equal_depths(Trial& t) {
   std::array<std::uint32_t, 5> order{0, 1, 2, 3, 4};
   // Five times the same triangle, so that the depths are the same bits.
@@ -230,6 +277,9 @@ std::vector<HardCase> depth() {
       {"ZBF-03", "triangles less than 1 px wide with depths up to 2^30", "the plane of the depths, float",
        "kernels: bins, simd::fill_triangles", "the corners' depths", "within the corners' depths",
        "depth range outside", 0, steep_depth},
+      {"ZBF-05", "1000 layers of alpha up to 0.002, random colours", "front to back in float",
+       "kernels::simd::put_behind", "MPFR, back to front", "both directions within 0.51 ulp", "ulp", 0.51,
+       thousand_layers},
       {"ZBF-07", "200000 values from 1e-3 to 1e3", "running mean in float",
        "kernels::CompensatedSum, ExactSum", "rationals", "within 2 ulp; the order does not matter", "ulp", 2,
        mean_of_fragments},
