@@ -194,24 +194,13 @@ void light_vertices(Shader<R>& shader, const Mesh& mesh, const Context& ctx) {
   });
 }
 
-// By face; empty where all are opaque.
-template <class R>
-std::vector<R> opacities(const Mesh& mesh) {
-  const Column* transparency = transparency_of(mesh);
-  std::vector<R> opacity;
-  if (transparency == nullptr) return opacity;
-  for (std::size_t f = 0; f < mesh.faces(); ++f)
-    opacity.push_back(std::clamp(R(1) - static_cast<R>(transparency->number(f, 0)), R(0), R(1)));
-  return opacity;
-}
-
 template <class R>
 Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
   using V3 = glm::vec<3, R>;
   Shader<R> shader{make_scene<R>(in, p), {}, false, {}};
   Scene<R>& s = shader.scene;
   const Mesh& mesh = *in.mesh;
-  s.opacity = opacities<R>(mesh);
+  s.opacity = opacities_of<R>(mesh);
   if (std::any_of(s.surfaces.begin(), s.surfaces.end(), [](const auto& of) { return of.two_sided; })) {
     const Ref<Column> world = world_positions<R>(mesh);
     const auto q = world->values<V3>();

@@ -3,6 +3,9 @@
 
 #include "runtime/buffers/mesh.h"
 
+#include <algorithm>
+#include <vector>
+
 namespace frustum {
 
 // One real number a face, 0 (opaque) to 1 (not there). A mesh without it is opaque, and so are the faces of parts
@@ -17,6 +20,16 @@ inline const Column* transparency_of(const Mesh& mesh) {
   if (c->domain() != Domain::face || c->width() != 1 || !real)
     throw NodeError("wrong_column", "column transparency is one real number a face", at_input("mesh"));
   return c;
+}
+
+// 1 - transparency by face, within [0, 1]; empty where no face has one.
+template <class R>
+std::vector<R> opacities_of(const Mesh& mesh) {
+  std::vector<R> opacity;
+  if (const Column* c = transparency_of(mesh))
+    for (std::size_t f = 0; f < c->rows(); ++f)
+      opacity.push_back(std::clamp(R(1) - static_cast<R>(c->number(f, 0)), R(0), R(1)));
+  return opacity;
 }
 
 }  // namespace frustum
