@@ -153,6 +153,8 @@ class Reader {
       notes_.add(o.path(), "has an emissive texture: its emission is left out");
     else
       m.emission = glm::dvec3(e[0], e[1], e[2]) * strength;
+    if (!std::isfinite(m.emission.x + m.emission.y + m.emission.z))
+      o.fail("its emission is larger than any number");
   }
 
   void note_the_rest(const Object& o) {
@@ -187,6 +189,9 @@ class Reader {
       down[2] = {offset[0], offset[1], 1};
       flip[1] = {0, -1, 0}, flip[2] = {0, 1, 1};
       m.texture_from_uv = flip * down * flip;
+      for (glm::length_t k = 0; k < 9; ++k)
+        if (!std::isfinite(m.texture_from_uv[k / 3][k % 3]))
+          t->fail("it moves coordinates beyond all numbers");
     }
     if (set > 15) info.fail(fmt::format("texture coordinates {}: at most 16 sets are read", set));
     m.uv_set = static_cast<std::uint32_t>(set);

@@ -200,6 +200,8 @@ class Walker {
                     : type == "spot" ? Light::Kind::spot
                                      : Light::Kind::point,
             .color = glm::dvec3(color[0], color[1], color[2]) * (intensity / std::numbers::pi)};
+    if (!std::isfinite(l.color.x + l.color.y + l.color.z))
+      o.fail("colour times intensity is larger than any number");
     if (l.kind == Light::Kind::spot) read_cone(o, l);
     if (l.kind != Light::Kind::point) l.direction = -axis(world, 2, node);
     if (!directional) l.position = world.translation, l.attenuation = {0, 0, 1};

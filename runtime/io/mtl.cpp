@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -48,7 +49,7 @@ class Materials {
     const auto file = near_path(obj_, name);
     if (!file)
       return warn("unsafe_path", fmt::format("{}: mtllib '{}' leaves the folder of the file; it is not read",
-                                              obj_.written, printable(name, 80)));
+                                             obj_.written, printable(name, 80)));
     if (!is_there(*file))
       return warn("missing_material_file",
                   fmt::format("{}: there is no file {}", obj_.written, printable(file->written, 80)));
@@ -72,8 +73,10 @@ class Materials {
     const Written& w = at->second;
     out.diffuse = w.kd.value_or(out.diffuse);
     if (w.ka)
-      for (glm::length_t k = 0; k < 3; ++k)
-        out.ambient[k] = out.diffuse[k] > 0 ? (*w.ka)[k] / out.diffuse[k] : 1;
+      for (glm::length_t k = 0; k < 3; ++k) {
+        const double ratio = (*w.ka)[k] / out.diffuse[k];
+        out.ambient[k] = out.diffuse[k] > 0 && std::isfinite(ratio) ? ratio : 1;
+      }
     if (w.illum == 2) out.specular = w.ks.value_or(glm::dvec3(0));
     out.shininess = w.ns.value_or(out.shininess);
     out.emission = w.ke.value_or(glm::dvec3(0));
@@ -99,7 +102,7 @@ class Materials {
     const auto file = near_path(obj_, w.map_kd);
     if (!file) {
       warn("unsafe_path", fmt::format("{}: '{}' leaves the folder of the OBJ file; it is not read",
-                                       w.map_place, printable(w.map_kd, 80)));
+                                      w.map_place, printable(w.map_kd, 80)));
       return nullptr;
     }
     const auto [at, fresh] = textures_.try_emplace({file->resolved, w.clamp});

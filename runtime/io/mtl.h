@@ -20,8 +20,8 @@ namespace frustum {
 //
 // MTL           here
 // Kd            diffuse, linear Rec.709 (the format says nothing of a space)
-// Ka            ambient, which here scales the diffuse colour: Ka / Kd; 1 where Kd is 0 and where there is no
-//               Ka
+// Ka            ambient, which here scales the diffuse colour: Ka / Kd; 1 where that is no number (Kd is 0) and
+//               where there is no Ka
 // Ks, Ns, Ke    specular, shininess, emission
 // illum         1: no specular; 2, and none: Blinn; others are reported
 // map_Kd        texture in its file's own space, its alpha left out; -s and -o scale and move it, -clamp on

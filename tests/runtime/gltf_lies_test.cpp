@@ -57,6 +57,22 @@ const Lie lies[] = {
      "malformed_file", "accessors[0].componentType"},
     {"wrong_type_of_json", [](GltfMaker& g) { g.document["accessors"] = Tree::object(); }, "malformed_file",
      "box.glb: accessors: this must be an array"},
+    {"emission_that_overflows",
+     [](GltfMaker& g) {
+       g.document["meshes"][0]["primitives"][0]["material"] = 0;
+       g.document["materials"] = {
+           {{"emissiveFactor", {1e200, 0, 0}},
+            {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e200}}}}}}};
+     },
+     "malformed_file", "box.glb: materials[0]: its emission is larger than any number"},
+    {"light_that_overflows",
+     [](GltfMaker& g) {
+       g.document["nodes"][0]["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};
+       g.document["extensions"] = {
+           {"KHR_lights_punctual",
+            {{"lights", {{{"type", "point"}, {"color", {1e200, 0, 0}}, {"intensity", 1e200}}}}}}};
+     },
+     "malformed_file", "lights[0]: colour times intensity is larger than any number"},
     {"sparse_index_outside",
      [](GltfMaker& g) {
        const std::size_t i = g.view(GltfMaker::bytes_of<std::uint16_t>({9})),

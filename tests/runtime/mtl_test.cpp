@@ -90,6 +90,10 @@ TEST_F(Obj, MaterialsHaveTheValuesOfTheirFile) {
   EXPECT_EQ(messages, "a.mtl: skipped 1 x Ni\n");
 }
 
+TEST_F(Obj, AnAmbientColourThatIsNoMultipleOfTheDiffuseOneIsLeftAlone) {
+  EXPECT_EQ(material("newmtl one\nKd 1e-200 0.5 0\nKa 1e200 1 1\n").ambient, glm::dvec3(1, 2, 1));
+}
+
 TEST_F(Obj, IlluminationWithoutLobesHasNoSpecular) {
   EXPECT_EQ(material("newmtl one\nKs 1 1 1\nillum 1\n").specular, glm::dvec3(0));
   EXPECT_EQ(material("newmtl one\nKs 1 1 1\n").specular, glm::dvec3(1));

@@ -33,10 +33,21 @@ void check_column(const Column& c) {
   }
 }
 
+bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+void check_material(const Material& m) {
+  require(finite(m.ambient) && finite(m.diffuse) && finite(m.specular) && finite(m.emission),
+          "a colour of a material is not finite");
+  require(std::isfinite(m.shininess) && m.shininess >= 0, "a shininess is not finite, or negative");
+  for (glm::length_t k = 0; k < 3; ++k) require(finite(m.texture_from_uv[k]), "a texture lies nowhere");
+}
+
 }  // namespace
 
 void check_mesh(const Mesh& mesh) {
   require(mesh.validate().empty(), mesh.validate());
+  if (mesh.materials)
+    for (const Material& material : mesh.materials->materials) check_material(material);
   for (const Ref<Column>& column : mesh.columns) check_column(*column);
   const Buffer buffer(std::make_shared<const Mesh>(mesh));
   require(buffer.bytes() != 0, "a mesh takes no bytes");

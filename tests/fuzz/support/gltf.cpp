@@ -23,6 +23,9 @@ void check_light(const Light& light) {
   require(
       finite(light.color) && finite(light.direction) && finite(light.position) && finite(light.attenuation),
       "a light is not finite");
+  require(
+      light.kind != Light::Kind::spot || (light.inner >= 0 && light.inner < light.outer && light.outer < 1.6),
+      "a spot has no cone");
 }
 
 }  // namespace
