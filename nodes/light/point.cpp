@@ -18,12 +18,8 @@ struct Outputs {
 };
 
 void check(const Params& p) {
-  if (!is_place(p.position))
-    throw NodeError("not_finite", "the position of the light is not finite", at_param("position"));
-  if (!falls_off(p.attenuation))
-    throw NodeError("bad_attenuation",
-                    "the attenuation coefficients must be finite, not negative and not all zero",
-                    at_param("attenuation"));
+  if (const auto fault = fault_of_point(p.position, p.attenuation))
+    throw NodeError(std::string(fault->code), std::string(fault->what), at_param(fault->param));
 }
 
 Outputs run(const Inputs&, const Params& p, Context&) {

@@ -1,20 +1,26 @@
 // Light from a point, weaker with distance.
 #pragma once
 
-#include <glm/vec3.hpp>
+#include "nodes/kernels/falloff.h"
 
-#include <cmath>
+#include <optional>
+#include <string_view>
 
 namespace frustum {
 
-/// Whether 1 / (a.x + a.y d + a.z d^2) is positive and finite for every distance d > 0.
-inline bool falls_off(const glm::dvec3& a) {
-  const double sum = a.x + a.y + a.z;
-  return a.x >= 0 && a.y >= 0 && a.z >= 0 && sum > 0 && std::isfinite(sum);
-}
+struct PointFault {
+  std::string_view code, param, what;
+};
 
-inline bool is_place(const glm::dvec3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+/// What is wrong with the numbers of a point light; nothing where its strength is positive and finite at every
+/// distance above 0 from a place that is finite.
+inline std::optional<PointFault> fault_of_point(const glm::dvec3& position, const glm::dvec3& attenuation) {
+  if (!kernels::is_place(position))
+    return PointFault{"not_finite", "position", "the position of the light is not finite"};
+  if (!kernels::falls_off(attenuation))
+    return PointFault{"bad_attenuation", "attenuation",
+                      "the attenuation coefficients must be finite, not negative and not all zero"};
+  return std::nullopt;
 }
 
 }  // namespace frustum

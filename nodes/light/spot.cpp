@@ -1,12 +1,8 @@
 #include "nodes/light/spot.h"
 
 #include "nodes/light.h"
-#include "nodes/light/directional.h"
-#include "nodes/light/point.h"
 #include "runtime/buffers/light.h"
 #include "runtime/core/node_type.h"
-
-#include <fmt/format.h>
 
 #include <numbers>
 
@@ -27,25 +23,15 @@ struct Outputs {
 };
 
 void check(const Params& p) {
-  if (!is_place(p.position))
-    throw NodeError("not_finite", "the position of the light is not finite", at_param("position"));
-  if (!travel_direction(p.direction))
-    throw NodeError("zero_direction", "the direction of the light has no length", at_param("direction"));
-  if (!falls_off(p.attenuation))
-    throw NodeError("bad_attenuation",
-                    "the attenuation coefficients must be finite, not negative and not all zero",
-                    at_param("attenuation"));
-  if (!is_cone(p.inner * radians, p.outer * radians))
-    throw NodeError("bad_cone",
-                    fmt::format("the light starts to fade at {} degrees from the axis, beyond its end at {}",
-                                p.inner, p.outer),
-                    at_param("inner"));
+  if (const auto fault =
+          fault_of_spot({p.position, p.direction, p.attenuation, p.inner * radians, p.outer * radians}))
+    throw NodeError(std::string(fault->code), std::string(fault->what), at_param(fault->param));
 }
 
 Outputs run(const Inputs&, const Params& p, Context&) {
   return {one_light(Light{.kind = Light::Kind::spot,
                           .color = p.color.rgb,
-                          .direction = travel_direction(p.direction).value(),
+                          .direction = kernels::normalized(p.direction).value(),
                           .position = p.position,
                           .attenuation = p.attenuation,
                           .inner = p.inner * radians,
