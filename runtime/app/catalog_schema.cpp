@@ -91,7 +91,7 @@ Json outputs_schema() {
                 {"description", "Layers of one file by name; \"\" is the main one."}}},
               {"file", text("Relative to --out; {frame} is the number of the frame.")},
               {"bits", {{"type", "integer"}, {"enum", {8, 16, 32}}, {"description", "Bits of a channel."}}},
-              {"compression", text("A compression of the format, such as zip or piz.")}});
+              {"compression", text("A compression of the format: zip or piz for .exr, quality:90 for .jpg.")}});
   return {{"type", "object"},
           {"propertyNames", {{"pattern", identifier}}},
           {"additionalProperties", std::move(out)}};

@@ -6,6 +6,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <initializer_list>
+#include <utility>
+
 namespace frustum::cli {
 namespace {
 
@@ -30,6 +34,28 @@ std::string test_pattern(std::string_view name) {
   return own + "|" + conformance;
 }
 
+// Lines of two columns, the first as wide as it has to be.
+std::string table(std::initializer_list<std::pair<std::string, std::string_view>> rows) {
+  std::size_t width = 0;
+  for (const auto& [left, right] : rows) width = std::max(width, left.size());
+  std::string out;
+  for (const auto& [left, right] : rows) out += fmt::format("  {:<{}}   {}\n", left, width, right);
+  return out;
+}
+
+std::string what_next(std::string_view name, const std::vector<ScaffoldFile>& files) {
+  return "\nIt builds and runs as it is. Now make it do what you want:\n" +
+         table({{files[0].path, "the algorithm"},
+                {files[1].path, "its ports and parameters"},
+                {files[2].path, "a case worked by hand, a property, a degenerate case"},
+                {files[3].path, "the smallest graph that shows it"}}) +
+         "\n" +
+         table({{"./dev run " + files[3].path, "builds and runs the example"},
+                {fmt::format("./dev test -R '{}'", test_pattern(name)), "runs its tests"},
+                {"./dev docs", "writes its schema and its page"}}) +
+         "\ndocs/adding_a_node.md tells the rest.\n";
+}
+
 int make(const Arguments& args, bool json) {
   if (const std::string problem = problem_of_node_name(args.name); !problem.empty())
     throw UsageError(fmt::format("new {}: {}", args.name, problem));
@@ -50,12 +76,7 @@ int make(const Arguments& args, bool json) {
   if (json)
     print(Json{{"written", written}});
   else
-    print(text + fmt::format("\nIt builds and runs as it is. Now make it do what you want:\n"
-                             "  {0}   the algorithm\n  {1}   its ports and parameters\n\n"
-                             "  ./dev run {3}   builds and runs the example\n"
-                             "  ./dev test -R '{2}'   runs its tests\n"
-                             "  ./dev docs   writes its schema and its page\n",
-                             files[0].path, files[1].path, test_pattern(args.name), files[3].path));
+    print(text + what_next(args.name, files));
   return done;
 }
 
