@@ -1,0 +1,28 @@
+#include "runtime/buffers/screen_view.h"
+
+#include <fmt/format.h>
+
+namespace frustum {
+
+Rect picture_window(const Mesh& mesh) {
+  if (!mesh.camera)
+    throw NodeError("no_camera", "the mesh has passed no projection, so its picture has no resolution",
+                    at_input("mesh"));
+  const glm::ivec2 size = mesh.camera->resolution;
+  constexpr int limit = 65536;
+  if (size.x > limit || size.y > limit)
+    throw NodeError("too_large", fmt::format("the picture is {} x {} pixels; at most {} x {} can be drawn",
+                                             size.x, size.y, limit, limit));
+  return {0, 0, size.x, size.y};
+}
+
+kernels::SamplePositions sample_positions(const SamplePattern* pattern) {
+  if (pattern == nullptr) return kernels::centre_sample();
+  return {pattern->samples, pattern->period, pattern->x, pattern->y};
+}
+
+kernels::DepthOrder depth_order(const Mesh& mesh) {
+  return mesh.camera->reversed_z ? kernels::DepthOrder::reversed : kernels::DepthOrder::standard;
+}
+
+}  // namespace frustum
