@@ -1,0 +1,4 @@
+// The algorithm stands in the kernels, since visibility.growth measures it too.
+#pragma once
+
+#include "nodes/kernels/painter_order.h"

@@ -1,0 +1,93 @@
+#include "nodes/visibility/zbuffer.h"
+
+#include "nodes/visibility.h"
+#include "runtime/buffers/pattern.h"
+#include "runtime/buffers/screen_view.h"
+#include "runtime/core/node_type.h"
+
+namespace frustum {
+namespace zbuffer {
+constexpr auto choices(Format) {
+  return std::array{std::pair{Format::unorm16, "unorm16"}, std::pair{Format::unorm24, "unorm24"},
+                    std::pair{Format::unorm32, "unorm32"}, std::pair{Format::float32, "float32"},
+                    std::pair{Format::real, "real"}};
+}
+constexpr auto choices(Interpolation) {
+  return std::array{std::pair{Interpolation::edges, "edges"}, std::pair{Interpolation::plane, "plane"}};
+}
+}  // namespace zbuffer
+namespace {
+
+struct Inputs {
+  Ref<Mesh> mesh;
+  std::optional<Ref<SamplePattern>> pattern;
+};
+struct Params {
+  zbuffer::Format format = zbuffer::Format::unorm24;
+  zbuffer::Interpolation interpolation = zbuffer::Interpolation::plane;
+};
+struct Outputs {
+  Tiled<Visibility> visibility;
+  Tiled<Depth> depth;
+};
+
+template <class R>
+struct Buffered {
+  ScreenView<R> view;
+  Ref<SamplePattern> pattern;
+  zbuffer::DepthBuffer<R> buffer;
+};
+using State = std::variant<Buffered<float>, Buffered<double>>;
+
+Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
+  const Rect window = picture_window(*in.mesh);
+  return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
+    ScreenView<R> view(in.mesh);
+    Ref<SamplePattern> pattern = in.pattern.value_or(nullptr);
+    zbuffer::DepthBuffer<R> buffer(view.triangles(), sample_positions(pattern.get()), pixel_rect(window),
+                                   depth_order(*in.mesh), p.format, p.interpolation,
+                                   [&ctx](std::uint64_t bytes) { ctx.claim(bytes); });
+    ctx.count("triangle_bin_pairs", buffer.bins().entries.size());
+    Frame visibility = visibility_frame<R>(window, pattern), depth = depth_frame<R>(window, pattern);
+    return {Buffered<R>{std::move(view), std::move(pattern), std::move(buffer)},
+            {std::move(visibility), std::move(depth)}};
+  });
+}
+
+void tile(const State& state, const TilesOf<Inputs>&, const TilesOf<Outputs>& out, Arena& arena) {
+  std::visit(
+      [&]<class R>(const Buffered<R>& buffered) {
+        fill_visibility<R>(out[&Outputs::visibility], out[&Outputs::depth], arena,
+                           [&](kernels::PixelRect rect, kernels::PlaneView<std::uint32_t> id,
+                               kernels::PlaneView<R> z) { buffered.buffer.fill(rect, id, z); });
+      },
+      state);
+}
+
+}  // namespace
+
+NodeType nodes::visibility_zbuffer() {
+  return pixel_node("visibility.zbuffer", prepare, tile)
+      .doc("Finds the nearest face at every sample with a depth buffer of few bits, to show what they hide.")
+      .cite(
+          "Catmull 1974, A Subdivision Algorithm for Computer Display of Curved Surfaces (the depth buffer)")
+      .cite("Upchurch & Desbrun 2012, Tightening the Precision of Perspective Rendering, JGT 16:40")
+      .covers(40, 41)
+      .input("mesh", &Inputs::mesh, "Opaque triangles of either winding, as rasterize.triangles takes them.",
+             {.space = Space::screen})
+      .input("pattern", &Inputs::pattern, "Where a pixel's samples lie; left out: one sample in its middle.")
+      .param("format", &Params::format,
+             "In what a depth is kept: whole numbers of 16, 24 or 32 bits, or reals; fewer bits make faces "
+             "fight.")
+      .knob({"unorm16", "unorm24", "unorm32", "real"},
+            "Depths closer than half a step are one, and the lowest source wins.")
+      .param(
+          "interpolation", &Params::interpolation,
+          "Depth from the plane of the corners, or along two sides and then between them, which rounds more.")
+      .knob({"edges", "plane"}, "Three interpolations round more than one plane.")
+      .output("visibility", &Outputs::visibility,
+              "The face and the depth that was kept; ties go to the lowest source.")
+      .output("depth", &Outputs::depth, "The depth alone; where nothing is seen, that of the far plane.");
+}
+
+}  // namespace frustum
