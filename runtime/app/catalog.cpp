@@ -59,6 +59,16 @@ class Writer {
   bool check_;
 };
 
+Json effects_json(const std::vector<EffectDoc>& effects) {
+  Json out = Json::array();
+  for (const EffectDoc& e : effects) {
+    Json j = {{"name", e.name}, {"doc", e.doc}, {"shortcut", e.shortcut}};
+    if (!e.cost.item.empty()) j["cost"] = {{"item", e.cost.item}, {"ns", e.cost.ns}};
+    out.push_back(std::move(j));
+  }
+  return out;
+}
+
 }  // namespace
 
 Json node_json(const NodeType& type) {
@@ -73,6 +83,7 @@ Json node_json(const NodeType& type) {
           {"foreign", type.foreign},
           {"inputs", ports_json(type.inputs)},
           {"outputs", ports_json(type.outputs)},
+          {"effects", effects_json(type.effects)},
           {"params", json_schema(type.params, {}, defaults.get())},
           {"example", example_path(type.name)}};
 }

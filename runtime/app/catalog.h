@@ -21,8 +21,11 @@ std::string range_text(const ParamOptions& options);
 // "graphs/nodes/clip/homogeneous.json".
 std::string example_path(std::string_view node_type);
 
-// A node in full: name, family, kind, doc, citations, rows, version, inputs, outputs, and the parameters'
-// JSON Schema.
+// "0.8 ns a sample"; empty where the cost was not measured.
+std::string cost_text(const EffectCost& cost);
+
+// A node in full: name, family, kind, doc, citations, rows, version, inputs, outputs, effects, and the
+// parameters' JSON Schema.
 Json node_json(const NodeType& type);
 
 // The knobs of a node: {"param", "values", "basis", "slope", "taste", "default"}, in the order of its parameters.

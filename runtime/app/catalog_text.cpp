@@ -74,7 +74,24 @@ std::string knobs_table(const NodeType& type) {
          rows;
 }
 
+std::string effects_table(const NodeType& type) {
+  if (type.effects.empty()) return "";
+  std::string out =
+      "\n## Effects\n\nWork that is left out where the scene does not call for it; `frustum plan` says "
+      "where, and why "
+      "([effects](../effects.md)).\n\n| effect | what is done where it is on | one costs |\n| --- | --- | "
+      "--- |\n";
+  for (const EffectDoc& e : type.effects)
+    out += fmt::format("| `{}`{} | {} | {} |\n", e.name, e.shortcut ? " (a shortcut)" : "", in_table(e.doc),
+                       cost_text(e.cost));
+  return out;
+}
+
 }  // namespace
+
+std::string cost_text(const EffectCost& cost) {
+  return cost.item.empty() ? "" : fmt::format("{:.2g} ns a {}", cost.ns, cost.item);
+}
 
 std::string type_names(const Port& port) {
   std::vector<std::string_view> names;
@@ -137,7 +154,7 @@ std::string node_page(const NodeType& type) {
                          : "A geometry node: whole buffers in, whole buffers out.\n";
   if (type.foreign) out += "A library computes its numbers: the same bytes on one processor only.\n";
   out += ports_table("Inputs", type.inputs, true) + ports_table("Outputs", type.outputs, false) +
-         params_table(type) + knobs_table(type);
+         params_table(type) + knobs_table(type) + effects_table(type);
   if (!type.citations.empty()) {
     out += "\n## Sources\n\n";
     for (const std::string& c : type.citations) out += fmt::format("- {}\n", c);

@@ -56,6 +56,12 @@ std::string fields_text(const ParamType& record, const void* defaults, const std
   return out;
 }
 
+std::string effect_head(const EffectDoc& e) {
+  const std::string cost = cost_text(e.cost);
+  return fmt::format("{}{}{}", e.name, e.shortcut ? "  a shortcut" : "",
+                     cost.empty() ? "" : fmt::format("  {}", cost));
+}
+
 std::string node_text(const NodeType& type) {
   std::string out =
       fmt::format("{}  ({})\n  {}\n", type.name, type.is_pixel() ? "pixel node" : "geometry node",
@@ -64,6 +70,8 @@ std::string node_text(const NodeType& type) {
   out += ports_text("inputs", type.inputs, true) + ports_text("outputs", type.outputs, false);
   const auto defaults = type.default_params();
   if (!type.params.fields.empty()) out += "\nparameters\n" + fields_text(type.params, defaults.get(), "");
+  if (!type.effects.empty()) out += "\neffects\n";
+  for (const EffectDoc& e : type.effects) out += described(effect_head(e), e.doc);
   if (!type.citations.empty()) out += fmt::format("\nsources\n  {}\n", fmt::join(type.citations, "\n  "));
   return out + fmt::format("\nexample: {}\n", example_path(type.name));
 }
@@ -93,6 +101,26 @@ int knobs(const Registry& registry, const NodeType* only, bool json) {
   return done;
 }
 
+// Every effect of the catalogue, or of one node.
+int effects(const Registry& registry, const NodeType* only, bool json) {
+  Json list = Json::array();
+  std::string text;
+  for (const auto& [name, type] : registry) {
+    if (only != nullptr && only != &type) continue;
+    for (const EffectDoc& e : type.effects)
+      text += described(fmt::format("{}: {}", name, effect_head(e)), e.doc);
+    for (Json e : node_json(type)["effects"]) {
+      e["node"] = name;
+      list.push_back(std::move(e));
+    }
+  }
+  if (json)
+    print(Json{{"effects", list}});
+  else
+    print(text);
+  return done;
+}
+
 std::vector<const NodeType*> types_of(const Registry& registry, const std::string& family) {
   std::vector<const NodeType*> out;
   for (const auto& [name, type] : registry)
@@ -100,9 +128,12 @@ std::vector<const NodeType*> types_of(const Registry& registry, const std::strin
   return out;
 }
 
-int nodes(const std::string& wanted, bool only_knobs, bool json) {
+enum class Only { all, knobs, effects };
+
+int nodes(const std::string& wanted, Only only, bool json) {
   const Session session;
-  if (only_knobs && wanted.empty()) return knobs(session.registry(), nullptr, json);
+  if (only == Only::knobs && wanted.empty()) return knobs(session.registry(), nullptr, json);
+  if (only == Only::effects && wanted.empty()) return effects(session.registry(), nullptr, json);
   const NodeType* type = session.registry().find(wanted);
   const auto family = type == nullptr ? types_of(session.registry(), wanted) : std::vector<const NodeType*>{};
   if (!family.empty()) {
@@ -120,7 +151,8 @@ int nodes(const std::string& wanted, bool only_knobs, bool json) {
                   .suggestions = nearest_names(wanted, session.registry().names())});
     return fail(problems, json);
   }
-  if (only_knobs) return knobs(session.registry(), type, json);
+  if (only == Only::knobs) return knobs(session.registry(), type, json);
+  if (only == Only::effects) return effects(session.registry(), type, json);
   if (json)
     print(node_json(*type));
   else
@@ -132,14 +164,17 @@ int nodes(const std::string& wanted, bool only_knobs, bool json) {
 
 void add_nodes(CLI::App& app, Invocation& chosen) {
   auto wanted = std::make_shared<std::string>();
-  auto only_knobs = std::make_shared<bool>(false);
+  auto only_knobs = std::make_shared<bool>(false), only_effects = std::make_shared<bool>(false);
   CLI::App& c =
       add_command(app, chosen, "nodes", "Lists the node types, those of a family, or shows one in full.",
-                  "frustum nodes clip.homogeneous",
-                  [wanted, only_knobs, &chosen] { return nodes(*wanted, *only_knobs, chosen.json); });
+                  "frustum nodes clip.homogeneous", [wanted, only_knobs, only_effects, &chosen] {
+                    const Only only = *only_knobs ? Only::knobs : *only_effects ? Only::effects : Only::all;
+                    return nodes(*wanted, only, chosen.json);
+                  });
   c.add_option("type", *wanted, "A node type, or a family of them such as clip.")->type_name("TYPE");
-  c.add_flag("--knobs", *only_knobs,
-             "Only the parameters that trade accuracy for time, from cheap to exact.");
+  CLI::Option* knob_flag = c.add_flag(
+      "--knobs", *only_knobs, "Only the parameters that trade accuracy for time, from cheap to exact.");
+  c.add_flag("--effects", *only_effects, "Only the work that a scene may not call for.")->excludes(knob_flag);
 }
 
 }  // namespace frustum::cli

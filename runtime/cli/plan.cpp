@@ -1,4 +1,7 @@
-// frustum plan GRAPH: what would run and why, what not, what streams and what is held whole.
+// frustum plan GRAPH: what would run and why, what not, what streams and what is held whole; which effects the scene
+// calls for; and whether what is left out would have changed a bit.
+#include "runtime/app/effects/plan_effects.h"
+#include "runtime/app/effects/prove.h"
 #include "runtime/cli/command.h"
 #include "runtime/core/text.h"
 
@@ -13,6 +16,8 @@ struct Arguments {
   GraphArguments graph;
   std::vector<std::string> wanted;
   bool no_fuse = false;
+  bool prove = false;
+  int repeats = 3, threads = 0;
 };
 
 std::vector<std::string> ids(const Graph& graph, const std::vector<std::size_t>& nodes) {
@@ -99,19 +104,44 @@ std::string plan_text(const Graph& graph, const Plan& plan) {
   return out;
 }
 
+int show(Session& session, const Arguments& args, const Graph& graph, const Demand& demand, bool json) {
+  const Plan made = make_plan(graph, demand, {.fuse = !args.no_fuse});
+  const EffectPlan effects = plan_effects(
+      session, graph, demand, {.threads = args.threads, .fuse = !args.no_fuse, .cancel = &cancel_flag()});
+  if (json) {
+    Json out = plan_json(graph, made);
+    out["effects"] = to_json(effects.effects);
+    print(with_diagnostics(std::move(out), effects.facts.problems));
+  } else {
+    print(plan_text(graph, made) + effects_text(effects));
+    report(effects.facts.problems);
+  }
+  return exit_code(effects.facts);
+}
+
+int prove(Session& session, const Arguments& args, const Graph& graph, const Demand& demand, bool json) {
+  const Proof proof = prove_effects(
+      session, graph, demand, {.repeats = args.repeats, .threads = args.threads, .cancel = &cancel_flag()});
+  if (proof.end != RunResult::End::done) {
+    RunResult failed;
+    failed.end = proof.end;
+    return fail(proof.problems, json, static_cast<Exit>(exit_code(failed)));
+  }
+  if (json)
+    print(with_diagnostics(to_json(proof), proof.problems));
+  else
+    print(proof_text(proof));
+  return proof.holds() ? done : check_failed;
+}
+
 int plan(const Arguments& args, bool json) {
-  const Session session;
+  Session session;
   const auto graph = load_or_report(session, args.graph, json, load_options(args.graph));
   if (!graph) return bad_input;
   Diagnostics problems;
   const Demand demand = demand_of(*graph, args.wanted, problems);
   if (problems.has_errors()) return fail(problems, json);
-  const Plan made = make_plan(*graph, demand, {.fuse = !args.no_fuse});
-  if (json)
-    print(plan_json(*graph, made));
-  else
-    print(plan_text(*graph, made));
-  return done;
+  return args.prove ? prove(session, args, *graph, demand, json) : show(session, args, *graph, demand, json);
 }
 
 }  // namespace
@@ -126,6 +156,17 @@ void add_plan(CLI::App& app, Invocation& chosen) {
       ->type_name("NODE.PORT|OUTPUT")
       ->allow_extra_args(false);
   c.add_flag("--no-fuse", args->no_fuse, "Every pixel node's outputs become whole.");
+  c.add_flag(
+      "--prove", args->prove,
+      "Runs the graph as planned and with what is off forced, all and one by one, and compares every bit; "
+      "exit 1 where one differs.");
+  c.add_option("--repeats", args->repeats, "With --prove: timed runs of each, in turns.")
+      ->check(quiet(CLI::Range(1, 1000)))
+      ->capture_default_str()
+      ->type_name("N");
+  c.add_option("--threads", args->threads, "Threads; 0 takes every processor.")
+      ->check(quiet(CLI::Range(0, 4096)))
+      ->type_name("N");
 }
 
 }  // namespace frustum::cli

@@ -1,4 +1,5 @@
 // frustum run GRAPH: makes the wanted files and buffers.
+#include "runtime/app/effects/plan_effects.h"
 #include "runtime/app/files.h"
 #include "runtime/app/observers.h"
 #include "runtime/cli/command.h"
@@ -23,7 +24,8 @@ struct Arguments {
   RunArguments run;
   CacheArguments cache;
   std::vector<std::string> wanted;
-  std::string out = "out", frames, trace;
+  std::vector<std::string> skipped;
+  std::string out = "out", frames, trace, forced;
   int repeat = 0;
   bool events = false;
 };
@@ -141,6 +143,7 @@ bool run_frame(Session& session, const Arguments& args, bool keep, std::optional
   if (!loaded.graph) return o.code = bad_input, false;
   RunOptions options;
   apply(args.run, options);
+  options.effects = effect_policy(session.registry(), assignments(args.forced), args.skipped, o.problems);
   options.demand = demand_of(*loaded.graph, args.wanted, o.problems);
   if (one_of_many) check_names_of_frames(*loaded.graph, options.demand, o.problems);
   if (o.problems.has_errors()) return o.code = bad_input, false;
@@ -251,6 +254,14 @@ void add_run(CLI::App& app, Invocation& chosen) {
       ->type_name("DIR");
   c.add_option("--frames", args->frames, "Sets the graph parameter frame to each of these in turn.")
       ->type_name("A-B");
+  c.add_flag("--force-effects{all}", args->forced,
+             "Simulates effects that the scene does not call for: all, or =NAME,...; the same bytes.")
+      ->type_name("[=NAME,...]");
+  c.add_option("--skip-effects", args->skipped,
+               "Leaves these effects out, whatever the scene calls for: another picture.")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,...");
   add_run_arguments(c, args->run);
   add_cache_arguments(c, args->cache);
   c.add_option("--trace", args->trace, "Writes a timeline in the Chrome trace format.")->type_name("FILE");

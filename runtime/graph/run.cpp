@@ -1,9 +1,11 @@
 #include "runtime/graph/run.h"
 
 #include "runtime/core/float_environment.h"
+#include "runtime/graph/run_effects.h"
 #include "runtime/graph/run_state.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -122,7 +124,7 @@ class Runner {
     while (step != none && !stopped_) {
       const Step& s = state_.plan.steps[step];
       const bool waits_for_pixels = state_.options.only_facts && s.kind == Step::Kind::pass;
-      if (!waits_for_pixels) run_guarded(s);
+      run_guarded(s);
       end_uses(s);
       if (waits_for_pixels) return;  // nor do its followers run
       std::size_t next = none;
@@ -140,7 +142,9 @@ class Runner {
   void run_guarded(const Step& s) {
     try {
       if (state_.options.cancel != nullptr && state_.options.cancel->cancelled()) throw Cancelled();
-      if (s.kind == Step::Kind::pass)
+      if (s.kind == Step::Kind::pass && state_.options.only_facts)
+        decide_pass(state_, s.index);
+      else if (s.kind == Step::Kind::pass)
         run_pass(state_, s.index);
       else if (state_.graph.nodes[s.index].type->is_pixel())
         prepare_node(s.index);
@@ -195,7 +199,7 @@ class Runner {
     ctx.precision = state_.graph.nodes[node].precision;
     ctx.seed = state_.graph.seed;
     ctx.cancel = state_.options.cancel;
-    ctx.wanted_outputs = wanted_[node];
+    ctx.wanted_outputs = state_.options.effects.forces(unused_outputs) ? ~std::uint64_t{0} : wanted_[node];
     ctx.effects = &state_.options.effects;
     ctx.admit = [this](std::uint64_t claimed) { state_.check_memory(claimed); };
     return ctx;
@@ -222,11 +226,24 @@ class Runner {
       bytes += outputs[p].bytes();
       check_health(n, p, outputs[p]);
       // A port that was found in a cache is there, and may be being read.
-      if (ctx.wants(p)) state_.publish({n, p}, outputs[p]);
+      if (is_wanted({n, p})) state_.publish({n, p}, outputs[p]);
     }
     state_.check_memory(0);
     report(n, ctx, WorkDone::Kind::node, start, bytes);
+    decide_unused(n);
     for (std::size_t p = 0; p < outputs.size(); ++p) state_.caches.keep({n, p}, outputs[p]);
+  }
+
+  bool is_wanted(PortRef p) const { return p.port >= 64 || ((wanted_[p.node] >> p.port) & 1) != 0; }
+
+  void decide_unused(std::size_t n) {
+    std::vector<std::string> unused;
+    const auto& outputs = state_.graph.nodes[n].type->outputs;
+    for (std::size_t p = 0; p < outputs.size(); ++p)
+      if (!is_wanted({n, p})) unused.push_back(outputs[p].name);
+    if (unused.empty()) return;
+    state_.decided(n, {{std::string(unused_outputs),
+                        off_exact(fmt::format("nobody reads {}", fmt::join(unused, ", ")), unused.size())}});
   }
 
   void check_health(std::size_t n, std::size_t port, const Buffer& b) {

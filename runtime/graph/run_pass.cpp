@@ -1,7 +1,9 @@
 #include "runtime/graph/pixel_run.h"
+#include "runtime/graph/run_effects.h"
 #include "runtime/graph/run_state.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -38,6 +40,7 @@ class Pass {
   void run() {
     build_ops();
     find_roots();
+    decide_unread();
     cut_where_margins_are_wide();
     open_sinks();
     const int edge = fit_memory();
@@ -49,6 +52,15 @@ class Pass {
     state_.caches.ran_pass(pass_.nodes, state_.now() - start);
     publish();
     keep_streamed();
+  }
+
+  void decide() {
+    build_ops();
+    for (const PixelPass::Root& root : pass_.roots) add_root(root.port);
+    for (const std::size_t o : pass_.outputs)
+      for (const OutputLayer& layer : graph_.outputs[o].layers)
+        if (!state_.buffer(layer.from)) add_root(layer.from);
+    decide_unread();
   }
 
  private:
@@ -83,6 +95,30 @@ class Pass {
         if (planes_read[p]) read[p] = true;
     }
     return in;
+  }
+
+  // Planes that nobody reads are not filled, unless a run is asked to fill them all the same.
+  void decide_unread() {
+    for (std::size_t i = 0; i < ops_.size(); ++i) {
+      TileOp& op = ops_[i];
+      std::vector<std::string> unread;
+      std::uint64_t numbers = 0;
+      for (std::size_t port = 0; port < op.planes_read.size(); ++port) {
+        const Frame& f = *op.prepared->frames[port];
+        const auto samples = static_cast<std::uint64_t>(f.window.area() * f.samples());
+        for (std::size_t p = 0; p < f.planes.size(); ++p) {
+          if (op.planes_read[port][p]) continue;
+          const auto& ports = op.type->outputs;
+          unread.push_back(ports.size() == 1 ? f.planes[p].name : ports[port].name + "." + f.planes[p].name);
+          numbers += samples;
+          op.planes_read[port][p] = state_.options.effects.forces(unread_planes);
+        }
+      }
+      if (unread.empty()) continue;
+      state_.decided(pass_.nodes[i],
+                     {{std::string(unread_planes),
+                       off_exact(fmt::format("nobody reads {}", fmt::join(unread, ", ")), numbers)}});
+    }
   }
 
   std::size_t add_root(PortRef port) {
@@ -361,6 +397,11 @@ void run_pass(RunState& state, std::size_t pass) {
   if (p.outputs.size() == 1 && state.graph.outputs[p.outputs.front()].whole)
     return save_output(state, state.graph.outputs[p.outputs.front()]);
   Pass(state, p).run();
+}
+
+void decide_pass(RunState& state, std::size_t pass) {
+  const PixelPass& p = state.plan.passes[pass];
+  if (!p.nodes.empty()) Pass(state, p).decide();
 }
 
 }  // namespace frustum

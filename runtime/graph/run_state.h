@@ -84,5 +84,7 @@ class RunState {
 
 // run_pass.cpp: walks the tiles of one pass of the plan, makes its roots whole and writes its outputs.
 void run_pass(RunState&, std::size_t pass);
+// Only says which planes of the pass nobody reads.
+void decide_pass(RunState&, std::size_t pass);
 
 }  // namespace frustum
