@@ -58,9 +58,12 @@ std::string space_of(const Inputs& in, const Params& p) {
 Verdict conversion(const Inputs& in, const Params& p, const Context&) {
   const Ref<ColorConfig> config = ColorConfig::open(p.config);
   const std::string from = space_of(in, p);
+  const Frame& frame = in.image.frame();
+  const auto samples =
+      static_cast<std::uint64_t>(frame.window.area()) * static_cast<std::uint64_t>(frame.samples());
   if (config->conversion(from, p.to, p.engine).identity())
-    return off_exact(fmt::format("{} and {} are one colour space", from, p.to));
-  return on(fmt::format("the image is {}, {} is asked for", from, p.to));
+    return off_exact(fmt::format("{} and {} are one colour space", from, p.to), samples);
+  return on(fmt::format("the image is {}, {} is asked for", from, p.to), samples);
 }
 
 // An identity that is forced changes no bit: it is applied without dividing by alpha and back. Images without

@@ -76,6 +76,8 @@ Verdict back_faces(const Inputs& in, const Params& p, const Context&) {
 }
 
 Outputs run(const Inputs& in, const Params& p, Context& ctx) {
+  // Only by its own name: forced with everything else, it stays what the graph asks for.
+  if (ctx.effects != nullptr && ctx.effects->forced.contains("back_faces")) return {in.mesh};
   if (in.material && (*in.material)->two_sided) return {in.mesh};
   std::vector<std::uint8_t> stays;
   if (!in.material) stays = two_sided_faces(*in.mesh);

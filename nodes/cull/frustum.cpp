@@ -16,8 +16,8 @@ struct Outputs {
 };
 
 // Always licensed: clipping would drop the same faces, one by one.
-Verdict outside(const Inputs&, const Params&, const Context&) {
-  return off_exact("a face that lies outside one side of the view volume covers no sample");
+Verdict outside(const Inputs& in, const Params&, const Context&) {
+  return off_exact("a face that lies outside one side of the view volume covers no sample", in.mesh->faces());
 }
 
 Outputs run(const Inputs& in, const Params&, Context& ctx) {

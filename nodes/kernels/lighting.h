@@ -33,7 +33,8 @@ struct LightSource {
   bool is_spot = false;     ///< a point light that shines into a cone
   Triple<R> axis{};         ///< of the cone: unit vector along which it shines
   R cone_scale = 0,
-    cone_offset = 1;  ///< strength times t^2, t = cosine from the axis * scale + offset in [0, 1]
+    cone_offset = 1;      ///< strength times t^2, t = cosine from the axis * scale + offset in [0, 1]
+  bool falls_off = true;  ///< false: attenuation is (1, 0, 0), which divides by 1 at every distance
 };
 
 /// Between the inner and the outer angle from its axis a spot fades like the square of a ramp in the cosine
@@ -97,7 +98,7 @@ struct PointRows {
   const R* sign = nullptr;
 };
 
-/// Rows of light received: before the surface's colours.
+/// Rows of light received: before the surface's colours. `specular` may be null where no surface has a highlight.
 template <std::floating_point R>
 struct LightRows {
   std::array<R*, 3> diffuse{}, specular{};
@@ -159,9 +160,11 @@ Received<R> receive(const LightSetup<R>& s, const Triple<R>& normal, const Tripl
       const Triple<R> d{l[0] - p[0], l[1] - p[1], l[2] - p[2]};
       const R square = dot3(d, d), distance = std::sqrt(square);
       l = unit3(d);
-      strength =
-          R(1) / (light.attenuation[0] + light.attenuation[1] * distance + light.attenuation[2] * square);
-      strength = strength < R(greatest_strength) ? strength : R(greatest_strength);
+      if (light.falls_off) {
+        strength =
+            R(1) / (light.attenuation[0] + light.attenuation[1] * distance + light.attenuation[2] * square);
+        strength = strength < R(greatest_strength) ? strength : R(greatest_strength);
+      }
       if (light.is_spot) {
         R t = light.cone_offset - dot3(l, light.axis) * light.cone_scale;
         t = t > R(0) ? t : R(0);
@@ -191,7 +194,10 @@ void receive_light(const LightSetup<R>& s, const PointRows<R>& in, Selection whi
     Triple<R> p{};
     if (in.position[0] != nullptr) p = {in.position[0][x], in.position[1][x], in.position[2][x]};
     const Received<R> r = receive(s, normal, p);
-    for (std::size_t k = 0; k < 3; ++k) out.diffuse[k][x] = r.diffuse[k], out.specular[k][x] = r.specular[k];
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.diffuse[k][x] = r.diffuse[k];
+      if (out.specular[k] != nullptr) out.specular[k][x] = r.specular[k];
+    }
   }
 }
 
@@ -199,7 +205,8 @@ template <std::floating_point R>
 struct SurfaceColors {
   Triple<R> ambient{};  ///< ambient light, already times the surface's ambient and diffuse shares
   Triple<R> diffuse{}, specular{};
-  Triple<R> emission{};  ///< light of the surface's own
+  Triple<R> emission{};      ///< light of the surface's own
+  bool adds_ambient = true;  ///< false: `ambient` is 0 and is not added
 };
 
 template <std::floating_point R>
@@ -208,7 +215,8 @@ struct ColorRows {
 };
 
 /// albedo (ambient + diffuse d) + specular s + emission with alpha 1 at the selected points; elsewhere transparent
-/// black, or what was there if `keep`.
+/// black, or what was there if `keep`. Where no colour is -0 or NaN, leaving out terms that are 0 keeps every bit:
+/// emission, which is always added, turns a -0 that a negative albedo makes into 0 either way.
 ///   albedo  three rows, or null for 1
 template <std::floating_point R>
 void reflect_light(const SurfaceColors<R>& c, const LightInput<R>& light,
@@ -221,9 +229,10 @@ void reflect_light(const SurfaceColors<R>& c, const LightInput<R>& light,
       if (out.plane[k] == nullptr) continue;
       R color = 0;
       if (selected) {
-        color = c.ambient[k] + c.diffuse[k] * light.diffuse[k][x];
+        color = c.diffuse[k] * light.diffuse[k][x];
+        if (c.adds_ambient) color = c.ambient[k] + color;
         if (albedo[k] != nullptr) color = albedo[k][x] * color;
-        color = color + c.specular[k] * light.specular[k][x];
+        if (light.specular[k] != nullptr) color = color + c.specular[k] * light.specular[k][x];
         color = color + c.emission[k];
       }
       out.plane[k][x] = color;

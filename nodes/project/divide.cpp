@@ -22,8 +22,8 @@ Verdict divide(const Inputs& in, const Params&, const Context& ctx) {
     const auto column = in.mesh->real<R>("position");
     const auto clip = column->template values<glm::vec<4, R>>();
     const std::size_t vertex = kernels::first_to_divide<R>(clip);
-    if (vertex == clip.size()) return off_exact("w is 1 at every vertex: the projection is parallel");
-    return on(fmt::format("w is {:.6g} at vertex {}", clip[vertex].w, vertex));
+    if (vertex == clip.size()) return off_exact("w is 1 at every vertex: the projection is parallel", clip.size());
+    return on(fmt::format("w is {:.6g} at vertex {}", clip[vertex].w, vertex), clip.size());
   });
 }
 

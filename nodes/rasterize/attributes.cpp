@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "nodes/kernels/parallel.h"
 #include "nodes/rasterize.h"
 #include "runtime/buffers/image.h"
@@ -24,7 +26,8 @@ using kernels::AttributeDomain;
 using kernels::Interpolation;
 using kernels::PlaneView;
 
-constexpr std::string_view perspective_name = "perspective_interpolation";
+constexpr std::string_view perspective_name = "perspective_interpolation",
+                           normals_name = "normal_interpolation";
 
 struct Inputs {
   Tiled<Visibility> hits;
@@ -44,6 +47,7 @@ struct Source {
   AttributeDomain domain;
   std::size_t width, first;
   bool slopes;
+  bool constant = false;  // over each face: the first corner's row stands for all
 };
 
 template <class R>
@@ -84,19 +88,25 @@ kernels::SamplePositions positions_of(const SamplePattern* pattern) {
 
 // Adds the planes of every column that has a place on the screen.
 template <class R>
-std::vector<Source> add_planes(const Mesh& mesh, PlaneList& planes) {
+std::vector<Source> add_planes(const Mesh& mesh, bool interpolates_normals, PlaneList& planes) {
   std::vector<Source> sources;
   for (const Ref<Column>& c : mesh.columns) {
     const auto domain = domain_of(*c);
     if (!domain || c->name() == "position") continue;
     const bool slopes = is_uv(*c);
-    sources.push_back({as_real<R>(c), *domain, static_cast<std::size_t>(c->width()), planes.size(), slopes});
+    sources.push_back({as_real<R>(c), *domain, static_cast<std::size_t>(c->width()), planes.size(), slopes,
+                       !interpolates_normals && c->name() == "normal"});
     for (const std::string& name : value_names(*c)) planes.push_back({name, plane_kind_of<R>});
     if (slopes)
       for (const char* slope : {".du_dx", ".dv_dx", ".du_dy", ".dv_dy"})
         planes.push_back({c->name() + slope, plane_kind_of<R>});
   }
   return sources;
+}
+
+std::uint64_t samples_of(const Inputs& in) {
+  const Frame& f = in.hits.frame();
+  return static_cast<std::uint64_t>(f.window.area()) * static_cast<std::uint64_t>(f.samples());
 }
 
 Verdict perspective(const Inputs& in, const Params& p, const Context& ctx) {
@@ -107,8 +117,53 @@ Verdict perspective(const Inputs& in, const Params& p, const Context& ctx) {
     const auto screen = column->template values<glm::vec<4, R>>();
     const std::size_t vertex =
         kernels::first_where(screen.size(), [&](std::size_t i) { return screen[i].w != R(1); });
-    if (vertex == screen.size()) return off_exact("1/w is 1 at every vertex: the projection is parallel");
-    return on(fmt::format("1/w is {:.6g} at vertex {}", screen[vertex].w, vertex));
+    if (vertex == screen.size())
+      return off_exact("1/w is 1 at every vertex: the projection is parallel", samples_of(in));
+    return on(fmt::format("1/w is {:.6g} at vertex {}", screen[vertex].w, vertex), samples_of(in));
+  });
+}
+
+// A corner's numbers that stand for a whole face are finite, without -0: a + u (b - a) is then exactly a for b = a.
+template <class R>
+std::size_t first_changing_face(const Mesh& mesh, const Column& column, AttributeDomain domain) {
+  const R* data = static_cast<const R*>(column.data());
+  const auto width = static_cast<std::size_t>(column.width());
+  const kernels::ScreenMesh<R> screen{{}, mesh.triangles(), {}};
+  const Attribute<R> a{data, column.width(), domain};
+  const auto plain = [](R x) { return std::isfinite(x) && !(x == R(0) && std::signbit(x)); };
+  return kernels::first_where(mesh.faces(), [&](std::size_t f) {
+    const auto face = static_cast<std::uint32_t>(f);
+    const R *p = data + a.row(screen, face, 0) * width, *q = data + a.row(screen, face, 1) * width,
+            *r = data + a.row(screen, face, 2) * width;
+    for (std::size_t i = 0; i < width; ++i)
+      if (!plain(p[i]) || p[i] != q[i] || p[i] != r[i] || !plain(q[i]) || !plain(r[i])) return true;
+    return false;
+  });
+}
+
+// The weights are finite where 1/w is, and neither 0 nor so extreme that their products overflow.
+template <class R>
+std::size_t first_wild_vertex(const Mesh& mesh) {
+  const auto column = mesh.real<R>("position");
+  const auto screen = column->template values<glm::vec<4, R>>();
+  return kernels::first_where(screen.size(), [&](std::size_t i) {
+    const double w = static_cast<double>(screen[i].w);
+    return !(w >= 0x1p-149 && w <= 0x1p128);
+  });
+}
+
+Verdict normals(const Inputs& in, const Params&, const Context& ctx) {
+  const std::uint64_t samples = samples_of(in);
+  const Column* column = in.mesh->find("normal");
+  const auto domain = column != nullptr ? domain_of(*column) : std::nullopt;
+  if (!domain) return off_exact("the mesh has no normals", samples);
+  return ctx.real([&]<class R>() {
+    const Ref<Column> normal = as_real<R>(in.mesh->share("normal"));
+    if (const std::size_t f = first_changing_face<R>(*in.mesh, *normal, *domain); f < in.mesh->faces())
+      return on(fmt::format("the normal changes over face {}", f), samples);
+    if (const std::size_t v = first_wild_vertex<R>(*in.mesh); v < in.mesh->vertices())
+      return on(fmt::format("1/w of vertex {} is no usual number", v), samples);
+    return off_exact("the three corners of each face have the same normal", samples);
   });
 }
 
@@ -116,7 +171,7 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   const Frame& hits = in.hits.frame();
   return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
     Frame points{hits.window, hits.pattern, {{"id", PlaneKind::u32}}};
-    std::vector<Source> sources = add_planes<R>(*in.mesh, points.planes);
+    std::vector<Source> sources = add_planes<R>(*in.mesh, ctx.simulates(normals_name), points.planes);
     const int w = static_cast<int>(points.planes.size());
     points.planes.push_back({"w", plane_kind_of<R>});
     Interpolator<R> state{in.mesh,
@@ -175,11 +230,18 @@ void fill(const Interpolator<R>& s, const Tile& from, const Tile& to) {
       check_and_copy(ids.row(sample, y - r.y0), r.width(), faces,
                      to.has(0) ? to.row<std::uint32_t>(0, sample, y) : nullptr);
 
-  std::vector<Attribute<R>> attributes;
-  for (const Source& source : s.sources)
-    if (const auto a = wanted<R>(source, to)) attributes.push_back(*a);
   const kernels::ScreenMesh<R> screen{s.position->template values<glm::vec<4, R>>(), s.mesh->triangles(), {}};
+  std::vector<Attribute<R>> attributes;
+  for (const Source& source : s.sources) {
+    const auto a = wanted<R>(source, to);
+    if (!a) continue;
+    if (source.constant)
+      copy_attribute<R>(screen, {r.x0, r.y0, r.x1, r.y1}, to.samples(), ids, *a);
+    else
+      attributes.push_back(*a);
+  }
   const PlaneView<R> w = view<R>(to, static_cast<std::size_t>(s.w));
+  if (attributes.empty() && w.data == nullptr) return;
   attributes_at<R>({screen, positions_of(s.pattern.get()), s.interpolation}, {r.x0, r.y0, r.x1, r.y1}, ids,
                    {attributes, w});
 }
@@ -205,6 +267,7 @@ NodeType nodes::rasterize_attributes() {
       .knob({"affine", "hyperbolic"},
             "affine saves a division a sample and is off by O(k^2) over a depth range of k.")
       .effect(perspective_name, perspective, "Attributes are weighted by 1/w and divided by their sum.")
+      .effect(normals_name, normals, "Normals are interpolated between the corners of each face.")
       .output("points", &Outputs::points,
               "id, uv with derivatives, N, P, w and other columns; 0 where nothing is seen.");
 }

@@ -1,14 +1,19 @@
 #include "nodes/shade/surface.h"
 
+#include "nodes/kernels/parallel.h"
 #include "nodes/shade.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/light.h"
+#include "runtime/buffers/lit_scene.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/real_rows.h"
 #include "runtime/buffers/transparency.h"
 #include "runtime/core/node_type.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
+
+#include <algorithm>
 
 namespace frustum {
 namespace {
@@ -43,10 +48,109 @@ struct Outputs {
 };
 
 // ----- preparation
+constexpr std::string_view highlights_name = "highlights", ambient_name = "ambient_light",
+                           attenuation_name = "attenuation", sides_name = "two_sided_lighting";
 
 template <class R>
 Triple<R> narrow(const glm::dvec3& v) {
   return {static_cast<R>(v.x), static_cast<R>(v.y), static_cast<R>(v.z)};
+}
+
+// A colour of -0 becomes 0: what is left out where it is 0 would have made 0 of a sum of -0.
+template <class R>
+Triple<R> narrow_color(const glm::dvec3& v) {
+  return narrow<R>(v + glm::dvec3(0.0));
+}
+
+// What a scene is lit with, from what was decided about its effects.
+struct Asked {
+  bool highlights, ambient, attenuation, sides;     // are simulated
+  bool all_highlights, all_attenuation, all_sides;  // forced: also where they are known to add nothing
+};
+
+template <class R>
+Surface<R> surface_of(const Material& m, const glm::dvec3& ambient_light, const Asked& asked) {
+  Surface<R> s{{narrow_color<R>(m.ambient * m.diffuse * ambient_light),
+                narrow_color<R>(m.diffuse),
+                {},
+                narrow_color<R>(m.emission),
+                asked.ambient},
+               asked.all_highlights ? kernels::Highlight::blinn : kernels::Highlight::none,
+               kernels::Exponent<R>(m.shininess),
+               m.two_sided};
+  if (m.unlit) {
+    s.colors.ambient = s.colors.diffuse, s.colors.diffuse = {};
+    s.colors.adds_ambient = true;
+    return s;
+  }
+  if (!asked.highlights || m.model == Reflection::lambert || m.specular == glm::dvec3{0}) return s;
+  s.colors.specular = narrow_color<R>(m.specular);
+  s.highlight = m.model == Reflection::phong ? kernels::Highlight::phong : kernels::Highlight::blinn;
+  return s;
+}
+
+template <class R>
+kernels::LightSource<R> source_of(const Light& light, const Asked& asked) {
+  const bool is_spot = light.kind == Light::Kind::spot,
+             is_point = is_spot || light.kind == Light::Kind::point;
+  kernels::LightSource<R> s{is_point, narrow_color<R>(light.color),
+                            narrow<R>(is_point ? light.position : -light.direction),
+                            narrow<R>(light.attenuation)};
+  s.falls_off = asked.attenuation && (asked.all_attenuation || falls_off(light));
+  if (is_spot) {
+    const kernels::Cone cone(light.inner, light.outer);
+    s.is_spot = true, s.axis = narrow<R>(light.direction);
+    s.cone_scale = static_cast<R>(cone.scale), s.cone_offset = static_cast<R>(cone.offset);
+  }
+  return s;
+}
+
+// World positions of the mesh's vertices: kept from project.view on, or its own before it.
+template <class R>
+Ref<Column> world_positions(const Mesh& mesh) {
+  const bool own = mesh.find("world") == nullptr && mesh.space() == Space::world;
+  if (!own && mesh.find("world") == nullptr)
+    throw NodeError("missing_column", "the mesh has no world positions: it has not passed project.view",
+                    at_input("mesh"));
+  Ref<Column> c = mesh.real<R>(own ? "position" : "world");
+  if (c->width() != 3)
+    throw NodeError("wrong_column", "world positions have three components", at_input("mesh"));
+  return c;
+}
+
+// The mesh's own lights and materials. Throws NodeError where a camera or a material is missing.
+//   two_sided  all surfaces are, whatever their materials say
+template <class R>
+Scene<R> make_scene(const LitScene& lit, const Camera* camera, bool two_sided, const Asked& asked) {
+  Scene<R> s;
+  glm::dvec3 ambient{0};
+  for (const Ref<LightSet>& set : lit.lights)
+    for (const Light& light : set->lights) {
+      if (light.kind == Light::Kind::ambient)
+        ambient += light.color;
+      else if (light.color != glm::dvec3{0})
+        s.lights.push_back(source_of<R>(light, asked));
+    }
+  bool needs_eye = false;
+  for (const auto& m : lit.materials) {
+    Surface<R> surface = surface_of<R>(*m, ambient, asked);
+    surface.two_sided = (surface.two_sided || two_sided) && asked.sides;
+    s.highlights = s.highlights || surface.highlight != kernels::Highlight::none;
+    needs_eye = needs_eye || surface.two_sided || surface.colors.specular != Triple<R>{};
+    s.surfaces.push_back(surface);
+  }
+  if (needs_eye && camera == nullptr)
+    throw NodeError("missing_camera", "highlights and two sides need a camera: link one to 'camera'");
+  if (camera != nullptr) s.eye = narrow<R>(camera->eye);
+  if (s.surfaces.size() > 1 && lit.mesh.find("material") != nullptr) {
+    const auto of = lit.mesh.at("material").values<std::uint32_t>();
+    for (const std::uint32_t m : of)
+      if (m >= s.surfaces.size())
+        throw NodeError("bad_material", "a face has a material that the mesh does not have",
+                        at_input("mesh"));
+    s.surface_of.assign(of.begin(), of.end());
+  }
+  return s;
 }
 
 // What a pixel needs in the precision of the node.
@@ -76,86 +180,18 @@ std::vector<Ref<Material>> materials_of(const Inputs& in) {
   return all;
 }
 
-template <class R>
-Surface<R> surface_of(const Material& m, const glm::dvec3& ambient_light) {
-  Surface<R> s{
-      {narrow<R>(m.ambient * m.diffuse * ambient_light), narrow<R>(m.diffuse), {}, narrow<R>(m.emission)},
-      kernels::Highlight::none,
-      kernels::Exponent<R>(m.shininess),
-      m.two_sided};
-  if (m.unlit) {
-    s.colors.ambient = s.colors.diffuse, s.colors.diffuse = {};
-    return s;
-  }
-  if (m.model == Reflection::lambert || m.specular == glm::dvec3{0}) return s;
-  s.colors.specular = narrow<R>(m.specular);
-  s.highlight = m.model == Reflection::phong ? kernels::Highlight::phong : kernels::Highlight::blinn;
-  return s;
-}
-
-template <class R>
-kernels::LightSource<R> source_of(const Light& light) {
-  const bool is_spot = light.kind == Light::Kind::spot,
-             is_point = is_spot || light.kind == Light::Kind::point;
-  kernels::LightSource<R> s{is_point, narrow<R>(light.color),
-                            narrow<R>(is_point ? light.position : -light.direction),
-                            narrow<R>(light.attenuation)};
-  if (is_spot) {
-    const kernels::Cone cone(light.inner, light.outer);
-    s.is_spot = true, s.axis = narrow<R>(light.direction);
-    s.cone_scale = static_cast<R>(cone.scale), s.cone_offset = static_cast<R>(cone.offset);
-  }
-  return s;
-}
-
+LitScene lit_scene(const Inputs& in) { return {*in.mesh, materials_of(in), in.lights}; }
 const Camera* camera_of(const Inputs& in) { return in.camera ? in.camera->get() : in.mesh->camera.get(); }
 
-// World positions of the mesh's vertices: kept from project.view on, or its own before it.
-template <class R>
-Ref<Column> world_positions(const Mesh& mesh) {
-  const bool own = mesh.find("world") == nullptr && mesh.space() == Space::world;
-  if (!own && mesh.find("world") == nullptr)
-    throw NodeError("missing_column", "the mesh has no world positions: it has not passed project.view",
-                    at_input("mesh"));
-  Ref<Column> c = mesh.real<R>(own ? "position" : "world");
-  if (c->width() != 3)
-    throw NodeError("wrong_column", "world positions have three components", at_input("mesh"));
-  return c;
-}
-
-template <class R>
-Scene<R> make_scene(const Inputs& in, const Params& p) {
-  Scene<R> s;
-  glm::dvec3 ambient{0};
-  for (const Ref<LightSet>& set : in.lights)
-    for (const Light& light : set->lights) {
-      if (light.kind == Light::Kind::ambient)
-        ambient += light.color;
-      else if (light.color != glm::dvec3{0})
-        s.lights.push_back(source_of<R>(light));
-    }
-  bool needs_eye = false;
-  for (const auto& m : materials_of(in)) {
-    Surface<R> surface = surface_of<R>(*m, ambient);
-    surface.two_sided = surface.two_sided || p.two_sided;
-    needs_eye = needs_eye || surface.two_sided || surface.highlight != kernels::Highlight::none;
-    s.surfaces.push_back(surface);
-  }
-  if (needs_eye) {
-    const Camera* camera = camera_of(in);
-    if (camera == nullptr)
-      throw NodeError("missing_camera", "highlights and two sides need a camera: link one to 'camera'");
-    s.eye = narrow<R>(camera->eye);
-  }
-  if (s.surfaces.size() > 1 && in.mesh->find("material") != nullptr) {
-    const auto of = in.mesh->at("material").values<std::uint32_t>();
-    for (const std::uint32_t m : of)
-      if (m >= s.surfaces.size())
-        throw NodeError("bad_material", "a face has a material that the mesh does not have",
-                        at_input("mesh"));
-    s.surface_of.assign(of.begin(), of.end());
-  }
-  return s;
+Asked asked_of(const Inputs& in, const Params& p, const Context& ctx) {
+  const bool places = p.interpolation != Interpolation::phong || in.points.frame().find("P.x");
+  return {.highlights = ctx.simulates(highlights_name),
+          .ambient = ctx.simulates(ambient_name),
+          .attenuation = ctx.simulates(attenuation_name),
+          .sides = ctx.simulates(sides_name),
+          .all_highlights = ctx.forces(highlights_name) && places,
+          .all_attenuation = ctx.forces(attenuation_name),
+          .all_sides = ctx.forces(sides_name)};
 }
 
 template <class Body>
@@ -197,10 +233,12 @@ void light_vertices(Shader<R>& shader, const Mesh& mesh, const Context& ctx) {
 template <class R>
 Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
   using V3 = glm::vec<3, R>;
-  Shader<R> shader{make_scene<R>(in, p), {}, false, {}};
+  const Asked asked = asked_of(in, p, ctx);
+  Shader<R> shader{make_scene<R>(lit_scene(in), camera_of(in), p.two_sided, asked), {}, false, {}};
   Scene<R>& s = shader.scene;
   const Mesh& mesh = *in.mesh;
   s.opacity = opacities_of<R>(mesh);
+  if (asked.all_sides) s.side.assign(mesh.faces(), R(1));
   if (std::any_of(s.surfaces.begin(), s.surfaces.end(), [](const auto& of) { return of.two_sided; })) {
     const Ref<Column> world = world_positions<R>(mesh);
     const auto q = world->values<V3>();
@@ -229,13 +267,61 @@ Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
 bool needs_position(const std::variant<Shader<float>, Shader<double>>& shader) {
   return std::visit(
       [](const auto& sh) {
-        for (const auto& surface : sh.scene.surfaces)
-          if (surface.highlight != kernels::Highlight::none) return true;
+        if (sh.scene.highlights) return true;
         for (const auto& light : sh.scene.lights)
           if (light.is_point) return true;
         return false;
       },
       shader);
+}
+
+// ----- effects
+// The points that are lit, were every pixel to show one face.
+std::uint64_t points_of(const Inputs& in, const Params& p) {
+  const Frame& f = in.points.frame();
+  return static_cast<std::uint64_t>(f.window.area()) *
+         static_cast<std::uint64_t>(p.rate == Rate::pixel ? 1 : f.samples());
+}
+
+Verdict highlights(const Inputs& in, const Params& p, const Context&) {
+  return needs_highlights(lit_scene(in), points_of(in, p));
+}
+Verdict ambient_light(const Inputs& in, const Params& p, const Context&) {
+  return needs_ambient(lit_scene(in), points_of(in, p));
+}
+Verdict attenuation(const Inputs& in, const Params& p, const Context&) {
+  return needs_attenuation(lit_scene(in), points_of(in, p));
+}
+
+Verdict two_sided_lighting(const Inputs& in, const Params& p, const Context& ctx) {
+  const std::uint64_t points = points_of(in, p);
+  const LitScene scene = lit_scene(in);
+  if (!p.two_sided && !scene.used([](const Material& m) { return m.two_sided; }))
+    return off_exact("no face has a material with two sides", points);
+  const Camera* camera = camera_of(in);
+  if (camera == nullptr) return on("a material has two sides", points);
+  return ctx.real([&]<class R>() {
+    const Ref<Column> world = world_positions<R>(*in.mesh);
+    const auto q = world->template values<glm::vec<3, R>>();
+    const auto triangles = in.mesh->triangles();
+    const Triple<R> eye = narrow<R>(camera->eye);
+    const std::size_t face = kernels::first_where(triangles.size(), [&](std::size_t f) {
+      const glm::uvec3& t = triangles[f];
+      return seen_side(q[t[0]], q[t[1]], q[t[2]], eye) < R(0);
+    });
+    if (face == triangles.size()) return off_exact("no face turns its back to the camera", points);
+    return on(fmt::format("face {} turns its back to the camera", face), points);
+  });
+}
+
+Verdict shadows(const Inputs& in, const Params&, const Context&) {
+  const Mesh& mesh = *in.mesh;
+  const bool own = mesh.find("world") == nullptr && mesh.space() == Space::world;
+  const Column* column = mesh.find(own ? "position" : "world");
+  if (column == nullptr || (column->name() == "position" && !own) || column->width() != 3)
+    return needs_shadows(lit_scene(in), {});
+  const Ref<Column> world = mesh.real<double>(column->name());
+  return needs_shadows(lit_scene(in), world->values<glm::dvec3>());
 }
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
@@ -273,9 +359,12 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
 }
 
 // ----- tiles
+bool has_highlights(const State& s) {
+  return std::visit([](const auto& shader) { return shader.scene.highlights; }, s.shader);
+}
 
-// Numbers come in threes: what is lit (normal and, where needed, position; or diffuse and specular light),
-// then albedo.
+// Numbers come in threes: what is lit (normal and, where needed, position; or diffuse and, where a surface has a
+// highlight, specular light), then albedo.
 template <class R>
 PointRow<R> point_row(const State& s, const std::uint32_t* id, const auto& number) {
   std::size_t at = 0;
@@ -289,7 +378,7 @@ PointRow<R> point_row(const State& s, const std::uint32_t* id, const auto& numbe
     if (s.position[0]) row.position = three();
   } else {
     row.received.diffuse = three();
-    row.received.specular = three();
+    if (has_highlights(s)) row.received.specular = three();
   }
   if (s.albedo[0]) row.albedo = three();
   return row;
@@ -300,7 +389,10 @@ template <class R>
 void interpolate_row(const State& s, const Shader<R>& shader, const Frame& frame, const std::uint32_t* id,
                      int sample, int x0, int y, std::size_t n, const std::array<R*, 6>& out) {
   const auto put = [&](std::size_t x, const Received<R>& r) {
-    for (std::size_t k = 0; k < 3; ++k) out[k][x] = r.diffuse[k], out[3 + k][x] = r.specular[k];
+    for (std::size_t k = 0; k < 3; ++k) {
+      out[k][x] = r.diffuse[k];
+      if (out[3 + k] != nullptr) out[3 + k][x] = r.specular[k];
+    }
   };
   const std::size_t faces = s.mesh->faces();
   const auto triangles = s.mesh->triangles();
@@ -356,12 +448,17 @@ class Filler {
         arena_(arena),
         n_(static_cast<std::size_t>(out.rect().width())),
         samples_(static_cast<std::size_t>(out.samples())) {
-    for (std::size_t k = 0; k < 3; ++k) scratch_.light.diffuse[k] = row(), scratch_.light.specular[k] = row();
+    const bool highlights = shader_.scene.highlights;
+    for (std::size_t k = 0; k < 3; ++k) {
+      scratch_.light.diffuse[k] = row();
+      if (highlights) scratch_.light.specular[k] = row();
+    }
     scratch_.side = row();
     scratch_.tag = arena.take<std::uint32_t>(n_).data();
     scratch_.present = &present_;
     const bool phong = s.interpolation == Interpolation::phong;
-    numbers_ = (phong && !s.position[0] ? 3 : 6) + (s.albedo[0] ? 3u : 0u);
+    lit_numbers_ = (phong ? static_cast<bool>(s.position[0]) : highlights) ? 6 : 3;
+    numbers_ = lit_numbers_ + (s.albedo[0] ? 3u : 0u);
     if (sizeof(R) == 8 || !phong) copies_ = arena.take<R>(numbers_ * samples_ * n_);
     row_.resize(numbers_ * samples_);
     id_.resize(samples_);
@@ -405,12 +502,12 @@ class Filler {
       if (s_.position[0]) add(points_, s_.position);
     } else {
       for (std::size_t k = 0; k < samples_; ++k) {
-        std::array<R*, 6> out;
-        for (std::size_t i = 0; i < 6; ++i) row_[i * samples_ + k] = out[i] = copy(i, k).data();
+        std::array<R*, 6> out{};
+        for (std::size_t i = 0; i < lit_numbers_; ++i) row_[i * samples_ + k] = out[i] = copy(i, k).data();
         interpolate_row(s_, shader_, points_.frame(), id_[k], static_cast<int>(k), points_.rect().x0, y, n_,
                         out);
       }
-      number = 6;
+      number = lit_numbers_;
     }
     if (s_.albedo[0]) add(albedo_, s_.albedo);
   }
@@ -452,7 +549,7 @@ class Filler {
   const Tile &points_, &albedo_, &out_;
   Arena& arena_;
   std::size_t n_, samples_;
-  std::size_t numbers_;
+  std::size_t lit_numbers_, numbers_;
   std::vector<const R*> row_;
   std::vector<const std::uint32_t*> id_;  // by sample
   RowScratch<R> scratch_;
@@ -499,6 +596,11 @@ NodeType nodes::shade_surface() {
       .knob({"pixel", "sample"}, "Light varies little within a pixel, except in highlights smaller than one.")
       .param("two_sided", &Params::two_sided,
              "Whether all faces, not just those of two-sided materials, are lit as if turned to the camera.")
+      .effect(highlights_name, highlights, "Mirrored light is found for every point, and added.")
+      .effect(ambient_name, ambient_light, "Light from everywhere is added.")
+      .effect(attenuation_name, attenuation, "The light of point lights is divided by its attenuation.")
+      .effect(sides_name, two_sided_lighting, "Normals of faces that turn their back are turned around.")
+      .effect("shadows", shadows, "Light does not reach what something else stands in front of.")
       .output(
           "color", &Outputs::color,
           "Linear Rec.709, premultiplied; alpha is the face's opacity where a point is seen, 0 elsewhere.");

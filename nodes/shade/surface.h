@@ -38,6 +38,7 @@ struct Scene {
   std::vector<std::uint32_t> surface_of;  ///< by face; empty: all have the first
   std::vector<R> side;                    ///< by face +1, or -1 where the eye sees its back; empty: all +1
   std::vector<R> opacity;                 ///< by face, in [0, 1]; empty: all 1
+  bool highlights = false;                ///< some surface has one
 
   kernels::LightSetup<R> setup(const Surface<R>& s) const { return {lights, eye, s.highlight, s.exponent}; }
   const Surface<R>& surface(std::size_t face) const {

@@ -3,7 +3,7 @@
 #include "nodes/texture.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/real_rows.h"
-#include "runtime/buffers/texture.h"
+#include "runtime/buffers/texture_facts.h"
 #include "runtime/core/node_type.h"
 
 #include <fmt/format.h>
@@ -32,8 +32,9 @@ struct Outputs {
 // What is looked up for some faces: no texture is white.
 struct Skin {
   Ref<Texture> texture;
-  std::vector<kernels::TexelLevel> levels;  // of a pyramid
-  std::array<RealPlane, 6> uv{};            // u v du_dx dv_dx du_dy dv_dy
+  std::optional<std::array<float, 4>> constant;  // every texel of every level has these bits
+  std::vector<kernels::TexelLevel> levels;       // of a pyramid
+  std::array<RealPlane, 6> uv{};                 // u v du_dx dv_dx du_dy dv_dy
   std::optional<glm::dmat3> texture_from_uv;
 };
 
@@ -67,37 +68,88 @@ std::vector<kernels::TexelLevel> texel_levels(const Texture& texture) {
   return levels;
 }
 
-Skin skin_of_texture(const Inputs& in, Ref<Texture> texture, std::uint32_t uv_set, Lookup filter,
-                     Precision precision) {
-  Skin s{.texture = texture, .levels = texel_levels(*texture), .uv = {}, .texture_from_uv = {}};
+// What was decided about the effects of the node, and what a skin is made from.
+struct Wish {
+  const Inputs& in;
+  Lookup filter;
+  Precision precision;
+  bool lookup, all_lookups, levels, all_levels;  // simulated; forced
+};
+
+constexpr std::string_view lookup_name = "texture_lookup", levels_name = "mip_levels";
+
+Wish wish_of(const Inputs& in, const Params& p, const Context& ctx) {
+  return {in,
+          p.filter,
+          ctx.precision,
+          ctx.simulates(lookup_name),
+          ctx.forces(lookup_name),
+          ctx.simulates(levels_name),
+          ctx.forces(levels_name)};
+}
+
+constexpr std::array uv_planes{".u", ".v", ".du_dx", ".dv_dx", ".du_dy", ".dv_dy"};
+
+// Whether read_real() would take the planes of a set of coordinates. What is known without them is still refused where
+// they are not there, so that whether a graph is right does not depend on what a texture holds.
+bool readable(const Wish& w, const std::string& uv, std::size_t planes) {
+  const Frame& f = w.in.points.frame();
+  for (std::size_t i = 0; i < planes; ++i) {
+    const auto at = f.find(uv + uv_planes[i]);
+    if (!at) return false;
+    const PlaneKind kind = f.planes[static_cast<std::size_t>(*at)].kind;
+    if (kind == PlaneKind::u32 || (kind == PlaneKind::f64 && w.precision == Precision::single)) return false;
+  }
+  return true;
+}
+
+Skin skin_of_texture(const Wish& w, Ref<Texture> texture, std::uint32_t uv_set) {
+  Skin s{
+      .texture = texture, .constant = {}, .levels = texel_levels(*texture), .uv = {}, .texture_from_uv = {}};
   const std::string uv = uv_column_name(uv_set);
   const bool board = std::holds_alternative<Checker>(texture->source);
-  const bool slopes = filter == Lookup::trilinear || (board && filter == Lookup::bilinear);
-  constexpr std::array names{".u", ".v", ".du_dx", ".dv_dx", ".du_dy", ".dv_dy"};
-  for (std::size_t i = 0; i < (slopes ? 6u : 2u); ++i)
-    s.uv[i] = read_real(in.points, uv + names[i], precision);
+  const bool filters = w.filter == Lookup::trilinear || (board && w.filter == Lookup::bilinear);
+  const std::size_t planes = filters ? 6 : 2;
+  const bool known = readable(w, uv, planes);
+  if (known && !w.all_lookups) s.constant = constant_color(*texture);
+  if (known && !w.lookup) s.constant = {1, 1, 1, 1};
+  if (s.constant) return s;
+  // A pyramid of one level, or one that is asked not to be used, is read as bilinear lookup does.
+  const bool base_only = known && !board && !w.all_levels && (!w.levels || s.levels.size() == 1);
+  if (base_only) s.levels.resize(1);
+  for (std::size_t i = 0; i < (base_only ? 2 : planes); ++i)
+    s.uv[i] = read_real(w.in.points, uv + uv_planes[i], w.precision);
   return s;
 }
 
-Skin skin_of_material(const Inputs& in, const Material& m, Lookup filter, Precision precision) {
-  if (!m.texture) return {};
+// What is not there is white. Forced, it is looked up like any texture: in one texel, at the points' first coordinates.
+Skin white_skin(const Wish& w) {
+  const std::string uv = uv_column_name(0);
+  if (!w.all_lookups || !readable(w, uv, uv_planes.size())) return {};
+  static const auto texel = std::make_shared<const Texture>(MipPyramid{.levels = {{1, 1, {1, 1, 1, 1}}}});
+  return skin_of_texture(w, texel, 0);
+}
+
+Skin skin_of_material(const Wish& w, const Material& m) {
+  const Inputs& in = w.in;
+  if (!m.texture) return white_skin(w);
   if (!in.points.frame().find(uv_column_name(m.uv_set) + ".u"))
     throw NodeError("missing_uv",
                     fmt::format("material \"{}\" has a texture, but the mesh has no texture coordinates "
                                 "for it: column {}",
                                 m.name, uv_column_name(m.uv_set)),
                     at_input("points"));
-  Skin s = skin_of_texture(in, m.texture, m.uv_set, filter, precision);
+  Skin s = skin_of_texture(w, m.texture, m.uv_set);
   if (m.texture_from_uv != glm::dmat3(1)) s.texture_from_uv = m.texture_from_uv;
   return s;
 }
 
 // The skins of the materials that faces have, and which each face takes.
-void dress_faces(const Inputs& in, const Mesh& mesh, State& s) {
+void dress_faces(const Wish& w, const Mesh& mesh, State& s) {
   const auto& materials = mesh.materials->materials;
   const Column* column = mesh.find("material");
   if (column == nullptr) {
-    s.skins = {skin_of_material(in, materials[0], s.filter, s.precision)};
+    s.skins = {skin_of_material(w, materials[0])};
     return;
   }
   constexpr std::uint32_t unused = ~std::uint32_t{0}, used = unused - 1;
@@ -118,40 +170,46 @@ void dress_faces(const Inputs& in, const Mesh& mesh, State& s) {
     }
     skin[m] = static_cast<std::uint32_t>(s.skins.size());
     if (plain) white = skin[m];
-    s.skins.push_back(skin_of_material(in, materials[m], s.filter, s.precision));
+    s.skins.push_back(skin_of_material(w, materials[m]));
   }
-  if (s.skins.empty()) s.skins.emplace_back();
+  if (s.skins.empty()) s.skins.push_back(white_skin(w));
   if (s.skins.size() == 1) return;
   s.skin_of.resize(of.size());
   for (std::size_t f = 0; f < of.size(); ++f) s.skin_of[f] = skin[of[f]];
 }
 
-void dress(const Inputs& in, State& s) {
+void dress(const Wish& w, State& s) {
+  const Inputs& in = w.in;
   if (in.texture) {
-    s.skins = {skin_of_texture(in, *in.texture, 0, s.filter, s.precision)};
+    s.skins = {skin_of_texture(w, *in.texture, 0)};
     return;
   }
   if (!in.mesh && !in.material)
     throw NodeError("missing_texture", "link a texture, or the mesh or material that has one");
   const Mesh* mesh = in.mesh ? in.mesh->get() : nullptr;
   if (in.material)
-    s.skins = {skin_of_material(in, **in.material, s.filter, s.precision)};
+    s.skins = {skin_of_material(w, **in.material)};
   else if (mesh->materials && !mesh->materials->materials.empty())
-    dress_faces(in, *mesh, s);
+    dress_faces(w, *mesh, s);
   else
-    s.skins = {Skin{}};
+    s.skins = {white_skin(w)};
   if (in.points.frame().find("color.x"))
     s.color = {read_real(in.points, "color.x", s.precision), read_real(in.points, "color.y", s.precision),
                read_real(in.points, "color.z", s.precision)};
 }
 
+bool is_white(const Skin& s) {
+  return s.constant ? *s.constant == std::array<float, 4>{1, 1, 1, 1} : !s.texture;
+}
+
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
+  const Wish wish = wish_of(in, p, ctx);
   State s{ctx.precision, p.filter, {}, {}, {}, -1};
-  dress(in, s);
+  dress(wish, s);
   s.id = s.skin_of.empty() ? in.points.try_read("id").value_or(-1) : in.points.read("id");
   const PlaneKind kind = real_kind(ctx.precision);
   const Frame& from = in.points.frame();
-  const bool white = s.skins.size() == 1 && !s.skins[0].texture && !s.color[0];
+  const bool white = !s.color[0] && s.skins.size() == 1 && is_white(s.skins[0]) && !wish.all_lookups;
   return {std::move(s),
           {Frame{.window = from.window,
                  .pattern = from.pattern,
@@ -159,6 +217,68 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
                  .color_space = std::string(linear_rec709),
                  .alpha = Alpha::premultiplied,
                  .white = white}}};
+}
+
+// ----- effects
+
+std::uint64_t samples_of(const Inputs& in) {
+  const Frame& f = in.points.frame();
+  return static_cast<std::uint64_t>(f.window.area()) * static_cast<std::uint64_t>(f.samples());
+}
+
+// The textures that points may show, each with the name of what has it.
+std::vector<std::pair<std::string, const Texture*>> textures_of(const Inputs& in) {
+  if (in.texture) return {{"the texture", in.texture->get()}};
+  std::vector<std::pair<std::string, const Texture*>> all;
+  const auto add = [&](const Material& m) {
+    if (m.texture)
+      all.emplace_back(m.name.empty() ? "the texture of a material"
+                                      : fmt::format("the texture of material \"{}\"", m.name),
+                       m.texture.get());
+  };
+  if (in.material)
+    add(**in.material);
+  else if (in.mesh && (*in.mesh)->materials)
+    for (const Material& m : (*in.mesh)->materials->materials) add(m);
+  return all;
+}
+
+Verdict texture_lookup(const Inputs& in, const Params&, const Context&) {
+  const std::uint64_t samples = samples_of(in);
+  const auto textures = textures_of(in);
+  for (const auto& [name, texture] : textures)
+    if (!constant_color(*texture)) return on(fmt::format("{} is not of one colour", name), samples);
+  if (textures.empty()) return off_exact("no material has a texture", samples);
+  return off_exact("every texel of every level has the same colour", samples);
+}
+
+Verdict mip_levels(const Inputs& in, const Params& p, const Context&) {
+  if (p.filter != Lookup::trilinear) return off_user("the graph asks for a filter that reads level 0 only");
+  const std::uint64_t samples = samples_of(in);
+  for (const auto& [name, texture] : textures_of(in))
+    if (const auto* pyramid = std::get_if<MipPyramid>(&texture->source);
+        pyramid != nullptr && pyramid->levels.size() > 1 && !constant_color(*texture))
+      return on(fmt::format("{} has {} levels", name, pyramid->levels.size()), samples);
+  return off_exact("no texture that is looked up has a second level", samples);
+}
+
+// Texel rows and vertex colours carry opacity; whoever shades takes every surface as opaque.
+Verdict transparency(const Inputs& in, const Params&, const Context&) {
+  constexpr std::string_view nothing =
+      "it is shown as opaque: nothing blends surfaces behind one another yet";
+  for (const auto& [name, texture] : textures_of(in))
+    if (const float alpha = least_opacity(*texture); alpha < 1 - 0x1p-20F)
+      return absent(fmt::format("{} has an opacity of {:.3g}, and {}", name, alpha, nothing));
+  const Column* color = in.mesh && !in.texture ? (*in.mesh)->find("color") : nullptr;
+  if (color != nullptr && color->width() == 4) {
+    const Ref<Column> rgba = (*in.mesh)->real<double>("color");
+    const auto rows = rgba->values<glm::dvec4>();
+    const auto row = std::find_if(rows.begin(), rows.end(), [](const glm::dvec4& c) { return c.a < 1; });
+    if (row != rows.end())
+      return absent(fmt::format("the vertex colour in row {} has an opacity of {:.3g}, and {}",
+                                row - rows.begin(), row->a, nothing));
+  }
+  return off_exact("every texel and every vertex colour is opaque");
 }
 
 // ----- tiles
@@ -236,10 +356,10 @@ class Sampler {
   }
 
   void look_up(const Skin& skin, int sample, int y, const std::uint32_t* id, const kernels::RgbaRows<R>& to) {
-    if (!skin.texture) {
-      for (R* plane : to.plane)
-        for (std::size_t x = 0; x < n_ && plane != nullptr; ++x)
-          plane[x] = id == nullptr || id[x] != kernels::no_point ? R(1) : R(0);
+    if (skin.constant || !skin.texture) {
+      for (std::size_t c = 0; c < 4; ++c)
+        if (to.plane[c] != nullptr)
+          fill_constant(skin.constant ? static_cast<R>((*skin.constant)[c]) : R(1), id, to.plane[c]);
       return;
     }
     std::array<const R*, 6> row{};
@@ -248,9 +368,14 @@ class Sampler {
     const kernels::UvRows<R> uv{row[0], row[1], row[2], row[3], row[4], row[5], id};
     if (const auto* board = std::get_if<Checker>(&skin.texture->source))
       return look_up_row<R>(checker_colors<R>(*board), s_.filter, uv, n_, to);
+    const Lookup filter = row[2] == nullptr ? std::min(s_.filter, Lookup::bilinear) : s_.filter;
     const auto& pyramid = std::get<MipPyramid>(skin.texture->source);
     look_up_row<R>(kernels::TexelPyramid{skin.levels, edge_rule(pyramid.wrap_u), edge_rule(pyramid.wrap_v)},
-                   s_.filter, uv, n_, to);
+                   filter, uv, n_, to);
+  }
+
+  void fill_constant(R value, const std::uint32_t* id, R* to) const {
+    for (std::size_t x = 0; x < n_; ++x) to[x] = id == nullptr || id[x] != kernels::no_point ? value : R(0);
   }
 
   // (u, v) goes through the whole map, its derivatives through the linear part.
@@ -307,6 +432,12 @@ NodeType nodes::texture_sample() {
       .knob({"nearest", "bilinear", "trilinear"},
             "nearest and bilinear alias where the texture is minified; trilinear reads eight texels and "
             "blurs a little.")
+      .effect(lookup_name, texture_lookup, "Textures are read at the (u, v) of every point.",
+              {"sample",
+               45})  // tests/bench/effects_bench.cpp, one thread, a machine shared with others: 41 to 52
+      .effect(levels_name, mip_levels,
+              "A level of the pyramid is chosen by the footprint of every point, and two blended.")
+      .effect("transparency", transparency, "What lies behind shines through surfaces that are not opaque.")
       .output("image", &Outputs::image, "Colour at every sample, linear Rec.709, premultiplied.");
 }
 

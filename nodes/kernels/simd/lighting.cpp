@@ -108,9 +108,11 @@ HWY_INLINE void receive_vector(const LightSetup<float>& s, const PointRows<float
       const V3 to = sub3(l, p), a = set3(light.attenuation);
       const V square = dot(to, to), distance = hn::Sqrt(square);
       l = unit(to);
-      strength = hn::Div(one, hn::Add(hn::Add(a[0], hn::Mul(a[1], distance)), hn::Mul(a[2], square)));
-      const V most = hn::Set(d, static_cast<float>(greatest_strength));
-      strength = hn::IfThenElse(hn::Lt(strength, most), strength, most);
+      if (light.falls_off) {
+        strength = hn::Div(one, hn::Add(hn::Add(a[0], hn::Mul(a[1], distance)), hn::Mul(a[2], square)));
+        const V most = hn::Set(d, static_cast<float>(greatest_strength));
+        strength = hn::IfThenElse(hn::Lt(strength, most), strength, most);
+      }
       if (light.is_spot) {
         V t = hn::Sub(hn::Set(d, light.cone_offset),
                       hn::Mul(dot(l, set3(light.axis)), hn::Set(d, light.cone_scale)));
@@ -132,7 +134,7 @@ HWY_INLINE void receive_vector(const LightSetup<float>& s, const PointRows<float
   }
   for (std::size_t k = 0; k < 3; ++k) {
     hn::StoreU(diffuse[k], d, out.diffuse[k] + x);
-    hn::StoreU(specular[k], d, out.specular[k] + x);
+    if (out.specular[k] != nullptr) hn::StoreU(specular[k], d, out.specular[k] + x);
   }
 }
 
@@ -167,10 +169,11 @@ void reflect(const SurfaceColors<float>& c, const LightInput<float>& light,
     };
     for (std::size_t k = 0; k < 3; ++k) {
       if (out.plane[k] == nullptr) continue;
-      V color = hn::Add(hn::Set(d, c.ambient[k]),
-                        hn::Mul(hn::Set(d, c.diffuse[k]), hn::LoadU(d, light.diffuse[k] + x)));
+      V color = hn::Mul(hn::Set(d, c.diffuse[k]), hn::LoadU(d, light.diffuse[k] + x));
+      if (c.adds_ambient) color = hn::Add(hn::Set(d, c.ambient[k]), color);
       if (albedo[k] != nullptr) color = hn::Mul(hn::LoadU(d, albedo[k] + x), color);
-      color = hn::Add(color, hn::Mul(hn::Set(d, c.specular[k]), hn::LoadU(d, light.specular[k] + x)));
+      if (light.specular[k] != nullptr)
+        color = hn::Add(color, hn::Mul(hn::Set(d, c.specular[k]), hn::LoadU(d, light.specular[k] + x)));
       put(k, hn::Add(color, hn::Set(d, c.emission[k])));
     }
     if (out.plane[3] != nullptr) put(3, hn::Set(d, 1.0F));
