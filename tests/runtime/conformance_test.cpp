@@ -1,6 +1,7 @@
 // What every node type and every example graph has to hold: walked from the registry and the folders, so
 // that a node that is added is held to it without a line here.
 #include "runtime/app/catalog.h"
+#include "runtime/app/effects/prove.h"
 #include "runtime/app/files.h"
 #include "runtime/app/metrics/metrics.h"
 #include "runtime/app/session.h"
@@ -68,6 +69,7 @@ TEST_P(EveryNode, IsDocumented) {
   expect_sentence(GetParam(), GetParam(), type().doc);
   for (const Port& p : type().inputs) expect_sentence(GetParam() + " input " + p.name, p.name, p.doc);
   for (const Port& p : type().outputs) expect_sentence(GetParam() + " output " + p.name, p.name, p.doc);
+  for (const EffectDoc& e : type().effects) expect_sentence(GetParam() + " effect " + e.name, e.name, e.doc);
   expect_fields_documented(GetParam(), type().params);
   for (const int row : type().rows) EXPECT_TRUE(row >= 1 && row <= 143) << row;
 }
@@ -261,6 +263,12 @@ TEST_P(EveryGraph, HasTheBytesOfTheWholeInEveryRegion) {
       EXPECT_TRUE(d.identical()) << graph_.name(port) << ": " << to_json(d).dump();
     }
   }
+}
+
+// With every effect that is off simulated, all at once and one by one: plan --prove.
+TEST_P(EveryGraph, KeepsEveryBitWhereWhatIsOffIsForced) {
+  const Proof proof = prove_effects(session(), graph_, options_.demand, {.repeats = 0});
+  EXPECT_TRUE(proof.holds()) << proof_text(proof) << to_text(proof.problems);
 }
 
 INSTANTIATE_TEST_SUITE_P(Conformance, EveryGraph,
