@@ -7,6 +7,7 @@
 #include "runtime/buffers/lit_scene.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/real_rows.h"
+#include "runtime/buffers/shading_scene.h"
 #include "runtime/buffers/transparency.h"
 #include "runtime/core/node_type.h"
 
@@ -51,108 +52,6 @@ struct Outputs {
 constexpr std::string_view highlights_name = "highlights", ambient_name = "ambient_light",
                            attenuation_name = "attenuation", sides_name = "two_sided_lighting";
 
-template <class R>
-Triple<R> narrow(const glm::dvec3& v) {
-  return {static_cast<R>(v.x), static_cast<R>(v.y), static_cast<R>(v.z)};
-}
-
-// A colour of -0 becomes 0: what is left out where it is 0 would have made 0 of a sum of -0.
-template <class R>
-Triple<R> narrow_color(const glm::dvec3& v) {
-  return narrow<R>(v + glm::dvec3(0.0));
-}
-
-// What a scene is lit with, from what was decided about its effects.
-struct Asked {
-  bool highlights, ambient, attenuation, sides;     // are simulated
-  bool all_highlights, all_attenuation, all_sides;  // forced: also where they are known to add nothing
-};
-
-template <class R>
-Surface<R> surface_of(const Material& m, const glm::dvec3& ambient_light, const Asked& asked) {
-  Surface<R> s{{narrow_color<R>(m.ambient * m.diffuse * ambient_light),
-                narrow_color<R>(m.diffuse),
-                {},
-                narrow_color<R>(m.emission),
-                asked.ambient},
-               asked.all_highlights ? kernels::Highlight::blinn : kernels::Highlight::none,
-               kernels::Exponent<R>(m.shininess),
-               m.two_sided};
-  if (m.unlit) {
-    s.colors.ambient = s.colors.diffuse, s.colors.diffuse = {};
-    s.colors.adds_ambient = true;
-    return s;
-  }
-  if (!asked.highlights || m.model == Reflection::lambert || m.specular == glm::dvec3{0}) return s;
-  s.colors.specular = narrow_color<R>(m.specular);
-  s.highlight = m.model == Reflection::phong ? kernels::Highlight::phong : kernels::Highlight::blinn;
-  return s;
-}
-
-template <class R>
-kernels::LightSource<R> source_of(const Light& light, const Asked& asked) {
-  const bool is_spot = light.kind == Light::Kind::spot,
-             is_point = is_spot || light.kind == Light::Kind::point;
-  kernels::LightSource<R> s{is_point, narrow_color<R>(light.color),
-                            narrow<R>(is_point ? light.position : -light.direction),
-                            narrow<R>(light.attenuation)};
-  s.falls_off = asked.attenuation && (asked.all_attenuation || falls_off(light));
-  if (is_spot) {
-    const kernels::Cone cone(light.inner, light.outer);
-    s.is_spot = true, s.axis = narrow<R>(light.direction);
-    s.cone_scale = static_cast<R>(cone.scale), s.cone_offset = static_cast<R>(cone.offset);
-  }
-  return s;
-}
-
-// World positions of the mesh's vertices: kept from project.view on, or its own before it.
-template <class R>
-Ref<Column> world_positions(const Mesh& mesh) {
-  const bool own = mesh.find("world") == nullptr && mesh.space() == Space::world;
-  if (!own && mesh.find("world") == nullptr)
-    throw NodeError("missing_column", "the mesh has no world positions: it has not passed project.view",
-                    at_input("mesh"));
-  Ref<Column> c = mesh.real<R>(own ? "position" : "world");
-  if (c->width() != 3)
-    throw NodeError("wrong_column", "world positions have three components", at_input("mesh"));
-  return c;
-}
-
-// The mesh's own lights and materials. Throws NodeError where a camera or a material is missing.
-//   two_sided  all surfaces are, whatever their materials say
-template <class R>
-Scene<R> make_scene(const LitScene& lit, const Camera* camera, bool two_sided, const Asked& asked) {
-  Scene<R> s;
-  glm::dvec3 ambient{0};
-  for (const Ref<LightSet>& set : lit.lights)
-    for (const Light& light : set->lights) {
-      if (light.kind == Light::Kind::ambient)
-        ambient += light.color;
-      else if (light.color != glm::dvec3{0})
-        s.lights.push_back(source_of<R>(light, asked));
-    }
-  bool needs_eye = false;
-  for (const auto& m : lit.materials) {
-    Surface<R> surface = surface_of<R>(*m, ambient, asked);
-    surface.two_sided = (surface.two_sided || two_sided) && asked.sides;
-    s.highlights = s.highlights || surface.highlight != kernels::Highlight::none;
-    needs_eye = needs_eye || surface.two_sided || surface.colors.specular != Triple<R>{};
-    s.surfaces.push_back(surface);
-  }
-  if (needs_eye && camera == nullptr)
-    throw NodeError("missing_camera", "highlights and two sides need a camera: link one to 'camera'");
-  if (camera != nullptr) s.eye = narrow<R>(camera->eye);
-  if (s.surfaces.size() > 1 && lit.mesh.find("material") != nullptr) {
-    const auto of = lit.mesh.at("material").values<std::uint32_t>();
-    for (const std::uint32_t m : of)
-      if (m >= s.surfaces.size())
-        throw NodeError("bad_material", "a face has a material that the mesh does not have",
-                        at_input("mesh"));
-    s.surface_of.assign(of.begin(), of.end());
-  }
-  return s;
-}
-
 // What a pixel needs in the precision of the node.
 template <class R>
 struct Shader {
@@ -171,19 +70,12 @@ struct State {
   std::array<RealPlane, 3> normal{}, position{}, albedo{};
 };
 
-std::vector<Ref<Material>> materials_of(const Inputs& in) {
-  if (in.material) return {*in.material};
-  if (!in.mesh->materials || in.mesh->materials->materials.empty())
-    return {std::make_shared<const Material>()};
-  std::vector<Ref<Material>> all;
-  for (const Material& m : in.mesh->materials->materials) all.push_back({in.mesh->materials, &m});
-  return all;
+LitScene lit_scene(const Inputs& in) {
+  return {*in.mesh, in.material ? std::vector{*in.material} : materials_of(*in.mesh), in.lights};
 }
-
-LitScene lit_scene(const Inputs& in) { return {*in.mesh, materials_of(in), in.lights}; }
 const Camera* camera_of(const Inputs& in) { return in.camera ? in.camera->get() : in.mesh->camera.get(); }
 
-Asked asked_of(const Inputs& in, const Params& p, const Context& ctx) {
+ShadingEffects effects_asked(const Inputs& in, const Params& p, const Context& ctx) {
   const bool places = p.interpolation != Interpolation::phong || in.points.frame().find("P.x");
   return {.highlights = ctx.simulates(highlights_name),
           .ambient = ctx.simulates(ambient_name),
@@ -233,8 +125,8 @@ void light_vertices(Shader<R>& shader, const Mesh& mesh, const Context& ctx) {
 template <class R>
 Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
   using V3 = glm::vec<3, R>;
-  const Asked asked = asked_of(in, p, ctx);
-  Shader<R> shader{make_scene<R>(lit_scene(in), camera_of(in), p.two_sided, asked), {}, false, {}};
+  const ShadingEffects asked = effects_asked(in, p, ctx);
+  Shader<R> shader{make_shading_scene<R>(lit_scene(in), camera_of(in), p.two_sided, asked), {}, false, {}};
   Scene<R>& s = shader.scene;
   const Mesh& mesh = *in.mesh;
   s.opacity = opacities_of<R>(mesh);
@@ -265,14 +157,7 @@ Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
 }
 
 bool needs_position(const std::variant<Shader<float>, Shader<double>>& shader) {
-  return std::visit(
-      [](const auto& sh) {
-        if (sh.scene.highlights) return true;
-        for (const auto& light : sh.scene.lights)
-          if (light.is_point) return true;
-        return false;
-      },
-      shader);
+  return std::visit([](const auto& sh) { return sh.scene.needs_positions(); }, shader);
 }
 
 // ----- effects
@@ -304,7 +189,7 @@ Verdict two_sided_lighting(const Inputs& in, const Params& p, const Context& ctx
     const Ref<Column> world = world_positions<R>(*in.mesh);
     const auto q = world->template values<glm::vec<3, R>>();
     const auto triangles = in.mesh->triangles();
-    const Triple<R> eye = narrow<R>(camera->eye);
+    const Triple<R> eye = eye_of<R>(*camera);
     const std::size_t face = kernels::first_where(triangles.size(), [&](std::size_t f) {
       const glm::uvec3& t = triangles[f];
       return seen_side(q[t[0]], q[t[1]], q[t[2]], eye) < R(0);

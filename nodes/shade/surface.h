@@ -2,6 +2,7 @@
 // samples gets its colours. The arithmetic of light itself is nodes/kernels/lighting.h.
 #pragma once
 
+#include "nodes/kernels/shading_scene.h"
 #include "nodes/kernels/simd/lighting.h"
 #include "nodes/kernels/vector.h"
 
@@ -22,30 +23,9 @@ using kernels::Received;
 using kernels::Triple;
 
 template <std::floating_point R>
-struct Surface {
-  kernels::SurfaceColors<R> colors;
-  kernels::Highlight highlight = kernels::Highlight::none;
-  kernels::Exponent<R> exponent;
-  bool two_sided = false;
-};
-
-/// Everything that lights a face. Nothing that depends on a pixel.
+using Surface = kernels::ShadedSurface<R>;
 template <std::floating_point R>
-struct Scene {
-  std::vector<kernels::LightSource<R>> lights;
-  Triple<R> eye{};
-  std::vector<Surface<R>> surfaces;       ///< at least one
-  std::vector<std::uint32_t> surface_of;  ///< by face; empty: all have the first
-  std::vector<R> side;                    ///< by face +1, or -1 where the eye sees its back; empty: all +1
-  std::vector<R> opacity;                 ///< by face, in [0, 1]; empty: all 1
-  bool highlights = false;                ///< some surface has one
-
-  kernels::LightSetup<R> setup(const Surface<R>& s) const { return {lights, eye, s.highlight, s.exponent}; }
-  const Surface<R>& surface(std::size_t face) const {
-    return surfaces[surface_of.empty() ? 0 : surface_of[face]];
-  }
-  R side_of(std::size_t face) const { return side.empty() ? R(1) : side[face]; }
-};
+using Scene = kernels::ShadingScene<R>;
 
 template <std::floating_point R>
 Triple<R> triple(const glm::vec<3, R>& v) {

@@ -75,6 +75,13 @@ std::optional<InFront> find_in_front(const Mesh& mesh, std::span<const glm::dvec
 
 }  // namespace
 
+std::vector<Ref<Material>> materials_of(const Mesh& mesh) {
+  if (!mesh.materials || mesh.materials->materials.empty()) return {std::make_shared<const Material>()};
+  std::vector<Ref<Material>> all;
+  for (const Material& m : mesh.materials->materials) all.push_back({mesh.materials, &m});
+  return all;
+}
+
 std::string name_of_material(std::span<const Ref<Material>> materials, std::size_t index) {
   const std::string& name = materials[index]->name;
   if (!name.empty()) return fmt::format("material \"{}\"", name);

@@ -16,6 +16,9 @@
 
 namespace frustum {
 
+// The mesh's own materials; of a mesh without any, the usual one.
+std::vector<Ref<Material>> materials_of(const Mesh&);
+
 struct LitScene {
   const Mesh& mesh;
   std::vector<Ref<Material>> materials;  // at least one; faces take theirs by the mesh's column "material"
