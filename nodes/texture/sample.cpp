@@ -112,7 +112,7 @@ Skin skin_of_texture(const Wish& w, Ref<Texture> texture, std::uint32_t uv_set) 
   const std::size_t planes = filters ? 6 : 2;
   const bool known = readable(w, uv, planes);
   if (known && !w.all_lookups) s.constant = constant_color(*texture);
-  if (known && !w.lookup) s.constant = {1, 1, 1, 1};
+  if (known && !w.lookup && !s.constant) s.constant = {1, 1, 1, 1};
   if (s.constant) return s;
   // A pyramid of one level, or one that is asked not to be used, is read as bilinear lookup does.
   const bool base_only = known && !board && !w.all_levels && (!w.levels || s.levels.size() == 1);
