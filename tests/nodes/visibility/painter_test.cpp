@@ -16,7 +16,7 @@ test::ScreenMeshMaker<float> slanted_and_small() {
   test::ScreenMeshMaker<float> m;
   const auto a = m.vertex(0, 0, -1), b = m.vertex(90, 0, 0.5), c = m.vertex(0, 60, -1);
   m.face.emplace_back(a, b, c);
-  const auto d = m.vertex(60, 2, -0.25), e = m.vertex(70, 2, -0.25), f = m.vertex(60, 10, -0.25);
+  const auto d = m.vertex(60, 2, -0.2), e = m.vertex(70, 2, -0.2), f = m.vertex(60, 10, -0.2);
   m.face.emplace_back(d, e, f);
   return m;
 }
