@@ -82,12 +82,12 @@ const stability::CatalogueRow catalogue_rows[] = {
     {"CLP-13", clipping_stage, "line clip at 1e25..3e38", false, "the line clipper"},
     {"CLP-14", clipping_stage, "guard-band overflow", true},
     // Line rasterization and fill
-    {"LIN-01", lines_stage, "Bresenham in all octants and int extremes", true, "the line rasterizer"},
-    {"LIN-02", lines_stage, "DDA accumulation", false, "the line rasterizer"},
-    {"LIN-04", lines_stage, "sub-pixel endpoints, diamond exit", false, "the line rasterizer"},
-    {"LIN-05", lines_stage, "clipped line must not change pixels", true, "the line rasterizer"},
-    {"LIN-06", lines_stage, "anti-aliased/wide line coverage", false, "the line rasterizer"},
-    {"LIN-07", lines_stage, "flood fill with NaN or tolerance colours, 4096^2 region", true, "the line rasterizer"},
+    {"LIN-01", lines_stage, "Bresenham in all octants and int extremes", true},
+    {"LIN-02", lines_stage, "DDA accumulation", false},
+    {"LIN-04", lines_stage, "sub-pixel endpoints, diamond exit", false},
+    {"LIN-05", lines_stage, "clipped line must not change pixels", true},
+    {"LIN-06", lines_stage, "anti-aliased/wide line coverage", false},
+    {"LIN-07", lines_stage, "flood fill with NaN or tolerance colours, 4096^2 region", true},
     // Triangle rasterization
     {"TRI-01", triangles_stage, "shared-edge coverage exactly once", true},
     {"TRI-03", triangles_stage, "edges through many pixel centres", true},

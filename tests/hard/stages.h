@@ -20,6 +20,7 @@ std::vector<HardCase> transforms();
 std::vector<HardCase> projection();
 std::vector<HardCase> clipping();
 std::vector<HardCase> culling();
+std::vector<HardCase> lines();
 std::vector<HardCase> triangles();
 std::vector<HardCase> depth();
 std::vector<HardCase> shading();
