@@ -38,6 +38,7 @@ struct State {
 
 // Names of a configuration that is a file are looked up when it is read.
 void check(const Params& p) {
+  if (p.to.empty()) throw NodeError("unknown_color_space", "no colour space is named", at_param("to"));
   if (!p.config.empty()) return;
   const Ref<ColorConfig> config = ColorConfig::open(p.config);
   for (const auto& [param, name] : {std::pair{"to", &p.to}, std::pair{"from", &p.from}}) try {

@@ -31,11 +31,17 @@ Raster layer_of_file(const Raster& pixels, const Params& p) {
   throw NodeError(
       "unknown_layer",
       fmt::format("{}: there is no layer '{}', only {}{}", p.file.written, p.layer, fmt::join(quoted, ", "),
-                  near.empty() ? "" : fmt::format("; did you mean '{}'?", near.front())));
+                  near.empty() ? "" : fmt::format("; did you mean '{}'?", near.front())),
+      at_param("layer"));
 }
 
 void check(const Params& p) {
   if (p.file.empty()) throw NodeError("no_file", "no file is named", at_param("file"));
+  try {
+    if (!p.space.empty()) ColorConfig::open({})->resolve(p.space);
+  } catch (const NodeError& e) {
+    throw NodeError(e.code, e.what(), at_param("space"));
+  }
 }
 
 Outputs run(const Inputs&, const Params& p, Context& ctx) {

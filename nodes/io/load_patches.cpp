@@ -77,6 +77,10 @@ struct Outputs {
   Ref<Surface> surface;
 };
 
+void check(const Params& p) {
+  if (p.file.empty()) throw NodeError("no_file", "no file is named", at_param("file"));
+}
+
 Outputs run(const Inputs&, const Params& p, Context& ctx) {
   const FileBytes bytes(p.file);
   auto surface = std::make_shared<Surface>(parse_patches(bytes.text(), p.file.written));
@@ -109,6 +113,7 @@ NodeType nodes::io_load_patches() {
       .cite("Newell 1975, The Utilization of Procedure Models in Digital Image Synthesis (the teapot)")
       .param("file", &Params::file,
              "A file of format frustum.patches/1: points, and patches of 16 indices into them.")
+      .check(check)
       .output("surface", &Outputs::surface,
               "The patches in object space; shared indices are shared control points.",
               {.space = Space::object});

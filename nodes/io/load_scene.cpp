@@ -51,8 +51,14 @@ const Camera& chosen(const GltfScene& scene, const Params& p) {
   std::vector<std::string> known;
   for (const auto& view : scene.views)
     known.push_back(fmt::format("\"{}\"", view.node.empty() ? view.name : view.node));
-  throw NodeError("unknown_camera", fmt::format("{} has no camera \"{}\"; it has {}: {}", p.file.written,
-                                                p.camera, scene.views.size(), fmt::join(known, ", ")));
+  throw NodeError("unknown_camera",
+                  fmt::format("{} has no camera \"{}\"; it has {}: {}", p.file.written, p.camera,
+                              scene.views.size(), fmt::join(known, ", ")),
+                  at_param("camera"));
+}
+
+void check(const Params& p) {
+  if (p.file.empty()) throw NodeError("no_file", "no file is named", at_param("file"));
 }
 
 Outputs run(const Inputs&, const Params& p, Context& ctx) {
@@ -86,6 +92,7 @@ NodeType nodes::io_load_scene() {
           .param("resolution", &Params::resolution, "Width and height of the picture; a file says neither.",
                  {.unit = "px", .range = between(1, 65536)})
           .param("textures", &Params::textures, "Whether pictures are read; without, materials are plain.")
+          .check(check)
           .output("mesh", &Outputs::mesh, "Every instance of every mesh of the default scene, in its place.",
                   {.space = Space::world})
           .output("camera", &Outputs::camera,

@@ -18,7 +18,9 @@ struct Arguments {
 
 int stability(const Arguments& args, bool json) {
   const auto& all = stability::hard_cases();
-  const auto outcomes = stability::run_cases(all, args.options);
+  stability::Options options = args.options;
+  options.cancel = &cancel_flag();
+  const auto outcomes = stability::run_cases(all, options);
   if (outcomes.empty()) throw UsageError("no hard case matches the filters");
   if (!args.docs.empty()) {
     if (!args.options.filters.empty() || args.options.gate_only)

@@ -67,6 +67,7 @@ void catch_signals() {
   struct sigaction before {};
   if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
     sigaction(SIGHUP, &action, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);  // so is one beyond the size that files may have
   std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is a failed write, not the end of the process
 }
 

@@ -89,6 +89,15 @@ void apply_settings(Instance& top, const LoadOptions& options, Diagnostics& prob
                            {},
                            fmt::format("frame={}", *options.frame)};
   for (const Setting& s : options.settings) {
+    if (options.frame && s.address == "frame") {
+      report(problems, *doc.text,
+             {.code = "frame_set_twice",
+              .pointer = "",
+              .message = fmt::format("--set frame={} would make every frame of --frames the same", s.value),
+              .expected = "--frames, or --set frame=N without it",
+              .got = s.value});
+      continue;
+    }
     if (!has_param_address(doc, s.address)) {
       report(problems, *doc.text,
              {.code = "unknown_address",

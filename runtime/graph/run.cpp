@@ -173,16 +173,32 @@ class Runner {
 
   void fail(const Step& s, End end, const std::string& code, const std::string& message,
             const std::string& part = {}) {
-    const SourcePlace place =
-        s.kind == Step::Kind::node ? state_.graph.nodes[s.index].place_of(part) : place_of(s);
-    state_.problem({.code = code,
-                    .pointer = place.pointer,
-                    .message = message,
-                    .file = place.file,
-                    .line = place.line,
-                    .column = place.column},
-                   s.kind == Step::Kind::node ? s.index : state_.graph.nodes.size());
+    if (s.kind == Step::Kind::node) {
+      const std::string at = part.empty() ? file_part(s.index, code) : part;
+      state_.problem(state_.at_node(s.index, code, message, Severity::error, at), s.index);
+    } else {
+      const SourcePlace& place = place_of(s);
+      state_.problem({.code = code,
+                      .pointer = place.pointer,
+                      .message = message,
+                      .file = place.file,
+                      .line = place.line,
+                      .column = place.column},
+                     state_.graph.nodes.size());
+    }
     stop(end);
+  }
+
+  // Readers know the file and not the parameter that names it: of a node with one such parameter it is that.
+  std::string file_part(std::size_t n, const std::string& code) const {
+    if (code != "cannot_read_file" && code != "malformed_file") return {};
+    std::string part;
+    for (const ParamField& field : state_.graph.nodes[n].type->params.fields) {
+      if (!field.type->files) continue;
+      if (!part.empty()) return {};
+      part = at_param(field.name);
+    }
+    return part;
   }
 
   const SourcePlace& place_of(const Step& s) const {

@@ -80,17 +80,25 @@ void RunState::problem(Diagnostic d, std::size_t order) {
   problems_.emplace_back(order, std::move(d));
 }
 
-void RunState::warning(std::size_t node, const std::string& code, const std::string& message) {
+Diagnostic RunState::at_node(std::size_t node, const std::string& code, const std::string& message,
+                             Severity severity, const std::string& part) const {
   const GraphNode& n = graph.nodes[node];
-  problem({.code = code,
-           .severity = Severity::warning,
-           .pointer = n.place.pointer,
-           .message = message,
-           .file = n.place.file,
-           .line = n.place.line,
-           .column = n.place.column},
-          node);
-  observe([&](Observer& listener) { listener.warned(n.id, code, message); });
+  const SourcePlace place = n.place_of(part);
+  // A graph that is used more than once as a node has one file: the id says which use it was.
+  const bool inside_a_graph = n.id.find('/') != std::string::npos;
+  Diagnostic d{.code = code,
+               .severity = severity,
+               .pointer = place.pointer,
+               .message = inside_a_graph ? fmt::format("{} (at '{}')", message, n.id) : message,
+               .file = place.file,
+               .line = place.line,
+               .column = place.column};
+  return d;
+}
+
+void RunState::warning(std::size_t node, const std::string& code, const std::string& message) {
+  problem(at_node(node, code, message, Severity::warning), node);
+  observe([&](Observer& listener) { listener.warned(graph.nodes[node].id, code, message); });
 }
 
 void RunState::culprit(Culprit c, std::size_t order) {
@@ -115,9 +123,12 @@ void RunState::check_memory(std::uint64_t further) const {
   if (options.memory == 0) return;
   const std::uint64_t live = ledger.live();
   if (live + further <= options.memory) return;
-  throw NodeError("memory",
-                  fmt::format("{} are live and {} more are needed, above the limit of {}", human_bytes(live),
-                              human_bytes(further), human_bytes(options.memory)));
+  throw NodeError(
+      "memory",
+      further == 0
+          ? fmt::format("{} are live, above the limit of {}", human_bytes(live), human_bytes(options.memory))
+          : fmt::format("{} are live and {} more are needed, above the limit of {}", human_bytes(live),
+                        human_bytes(further), human_bytes(options.memory)));
 }
 
 void RunState::take_results(RunResult& result) {

@@ -49,6 +49,9 @@ class RunState {
 
   // ----- reports, from any thread
   void problem(Diagnostic d, std::size_t order);
+  // Of a node, at a part of it (NodeError::part).
+  Diagnostic at_node(std::size_t node, const std::string& code, const std::string& message, Severity severity,
+                     const std::string& part = {}) const;
   void warning(std::size_t node, const std::string& code,
                const std::string& message);  // to the observer as well
   void culprit(Culprit c, std::size_t order);

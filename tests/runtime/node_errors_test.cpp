@@ -1,6 +1,7 @@
 // What a node says is wrong stands where the user wrote it: at the parameter or at the link, before the run where that can
 // be known.
 #include "runtime/app/session.h"
+#include "tests/support/temp_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,6 +57,10 @@ TEST(NodeErrors, ParametersThatDoNotFitTogetherAreFoundWhenTheGraphIsLoaded) {
       {R"("model": { "type": "io.load_mesh", "params": { "file": "model.max" } })", "unknown_format",
        "/nodes/model/params/file"},
       {R"("model": { "type": "io.load_mesh" })", "no_file", "/nodes/model"},
+      {R"("model": { "type": "io.load_scene", "params": { "file": "" } })", "no_file",
+       "/nodes/model/params/file"},
+      {R"("card": { "type": "io.load_image", "params": { "file": "a.png", "space": "srbg" } })",
+       "unknown_color_space", "/nodes/card/params/space"},
   };
   for (const auto& c : cases) {
     const Ends ends = run_text(c.nodes);
@@ -117,6 +122,33 @@ TEST(NodeErrors, WhatOnlyARunFindsStandsAtTheParameterOrTheLink) {
   ASSERT_TRUE(empty.loaded.graph) << to_text(empty.loaded.problems);
   d = only_error(empty.result.problems);
   EXPECT_THAT(d.pointer, testing::StartsWith("/nodes/lit/in/")) << d.message;
+}
+
+TEST(NodeErrors, WhatHappensInsideAGraphUsedAsANodeNamesItsUse) {
+  const test::TempFolder folder;
+  folder.write("inner.json", R"({ "format": "frustum.graph/1", "nodes": {
+    "m": { "type": "io.load_mesh", "params": { "file": "none.obj" } } }, "outputs": { "mesh": { "from": "m" } } })");
+  const std::string path = folder.write("outer.json", R"({ "format": "frustum.graph/1", "nodes": {
+    "first": { "type": "graph", "file": "inner.json" } }, "outputs": { "mesh": { "from": "first" } } })");
+  Session session;
+  const Loaded loaded = session.load(path);
+  ASSERT_TRUE(loaded.graph) << to_text(loaded.problems);
+  const RunResult r = session.run(*loaded.graph, {.demand = {.ports = end_ports(*loaded.graph)}});
+  EXPECT_EQ(r.end, RunResult::End::world_failed);
+  const Diagnostic d = only_error(r.problems);
+  EXPECT_EQ(d.code, "cannot_read_file");
+  EXPECT_EQ(d.pointer, "/nodes/m/params/file") << "the parameter that names the file";
+  EXPECT_THAT(d.message, testing::HasSubstr("(at 'first/m')"));
+}
+
+TEST(NodeErrors, AFrameOfASeriesIsNotSetByHandAsWell) {
+  const Session session;
+  LoadOptions load{.settings = {{"frame", "9"}}};
+  load.frame = 1;
+  const Loaded loaded =
+      load_graph_text(R"({ "format": "frustum.graph/1", "params": { "frame": 1 }, "nodes": {} })", "g.json",
+                      session.registry(), load);
+  EXPECT_EQ(only_error(loaded.problems).code, "frame_set_twice");
 }
 
 constexpr auto frame_of_many_samples = R"("box": { "type": "mesh.box" },

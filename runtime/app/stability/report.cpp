@@ -78,6 +78,7 @@ std::vector<Outcome> run_cases(const HardCases& all, const Options& options,
   std::vector<Outcome> outcomes;
   for (const CatalogueRow& row : all.catalogue) {
     if (!chosen(row, options)) continue;
+    if (options.cancel != nullptr && options.cancel->cancelled()) throw Cancelled();
     outcomes.push_back(run_case(all, row, options));
     if (done) done(outcomes.back());
   }

@@ -3,6 +3,7 @@
 
 #include "runtime/app/stability/hard_case.h"
 
+#include "runtime/core/context.h"
 #include "runtime/core/diagnostic.h"
 
 #include <functional>
@@ -33,13 +34,14 @@ struct Outcome {
 struct Options {
   std::vector<std::string> filters = {};  // parts of ids, titles or stages; none: all
   bool gate_only = false;
-  bool full = false;  // more samples
-  bool timed = true;  // measure the price
+  bool full = false;                   // more samples
+  bool timed = true;                   // measure the price
+  const CancelFlag* cancel = nullptr;  // looked at between cases
 };
 
 // Runs one case of the catalogue.
 Outcome run_case(const HardCases&, const CatalogueRow&, const Options&);
-// Runs what the options choose, in the catalogue's order; `done` sees each outcome as it comes.
+// Runs what the options choose, in the catalogue's order; `done` sees each outcome as it comes. Throws Cancelled.
 std::vector<Outcome> run_cases(const HardCases&, const Options&,
                                const std::function<void(const Outcome&)>& done = {});
 
