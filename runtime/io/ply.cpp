@@ -255,6 +255,7 @@ class PlyReader {
   // ----- finishing
 
   void finish_normals() {
+    if (!normal_ && triangle_->rows() == 0) return;
     const bool stated = normal_ != nullptr;
     if (!stated) normal_ = Column::make<Vec3>("normal", Domain::vertex, vertices_);
     if (!stated) std::fill_n(normal_->template values<Vec3>().begin(), vertices_, Vec3(0));
