@@ -4,6 +4,7 @@
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/pattern.h"
+#include "runtime/buffers/screen_view.h"
 #include "runtime/buffers/transparency.h"
 #include "runtime/core/node_type.h"
 
@@ -31,38 +32,13 @@ struct Outputs {
 
 template <class R>
 struct Filler {
-  Ref<Mesh> mesh;
-  Ref<Column> position;
+  ScreenView<R> view;
   Ref<SamplePattern> pattern;
-  std::vector<std::uint8_t> hides;
+  std::vector<std::uint8_t> hides = {};
   int layers = 1;
-  std::optional<LayerRasterizer<R>> rasterizer;
+  std::optional<LayerRasterizer<R>> rasterizer = {};
 };
 using State = std::variant<Filler<float>, Filler<double>>;
-
-Rect window_of(const Mesh& mesh) {
-  if (!mesh.camera)
-    throw NodeError("no_camera", "the mesh has passed no projection, so its picture has no resolution",
-                    at_input("mesh"));
-  const glm::ivec2 size = mesh.camera->resolution;
-  constexpr int limit = 65536;
-  if (size.x > limit || size.y > limit)
-    throw NodeError("too_large", fmt::format("the picture is {} x {} pixels; at most {} x {} can be drawn",
-                                             size.x, size.y, limit, limit));
-  return {0, 0, size.x, size.y};
-}
-
-kernels::SamplePositions positions_of(const SamplePattern* pattern) {
-  if (pattern == nullptr) return kernels::centre_sample();
-  return {pattern->samples, pattern->period, pattern->x, pattern->y};
-}
-
-template <class R>
-kernels::ScreenMesh<R> screen_of(const Mesh& mesh, const Column& position) {
-  const Column* origin = mesh.find("origin");
-  return {position.values<glm::vec<4, R>>(), mesh.triangles(),
-          origin != nullptr ? origin->values<std::uint32_t>() : std::span<const std::uint32_t>()};
-}
 
 // By face whether nothing behind it shows; empty where no face is opaque.
 std::vector<std::uint8_t> opaque_faces(const Mesh& mesh) {
@@ -128,16 +104,12 @@ Ref<SamplePattern> layered(const Ref<SamplePattern>& pattern, int layers, Contex
 
 template <class R>
 std::pair<Filler<R>, Frame> make_filler(const Inputs& in, const Params& p, Rect window, Context& ctx) {
-  Filler<R> f;
-  f.mesh = in.mesh, f.position = in.mesh->real<R>("position"), f.pattern = in.pattern.value_or(nullptr);
+  Filler<R> f{.view = ScreenView<R>(in.mesh), .pattern = in.pattern.value_or(nullptr)};
   if (ctx.simulates(hiding_name)) f.hides = opaque_faces(*in.mesh);
   ctx.claim(f.hides.size());
-  const auto order =
-      in.mesh->camera->reversed_z ? kernels::DepthOrder::reversed : kernels::DepthOrder::standard;
   const LayerRasterizer<R>& r =
-      f.rasterizer.emplace(screen_of<R>(*in.mesh, *f.position), positions_of(f.pattern.get()),
-                           kernels::PixelRect{window.x0, window.y0, window.x1, window.y1}, order, f.hides,
-                           [&ctx](std::uint64_t bytes) { ctx.claim(bytes); });
+      f.rasterizer.emplace(f.view.triangles(), sample_positions(f.pattern.get()), pixel_rect(window),
+                           depth_order(*in.mesh), f.hides, [&ctx](std::uint64_t bytes) { ctx.claim(bytes); });
   const auto limit = static_cast<std::uint32_t>(p.max_layers.value_or(std::numeric_limits<int>::max()));
   const kernels::FragmentCounts counts = r.count(limit, [&ctx] { ctx.poll(); });
   f.layers = layers_of(counts, p, r.samples());
@@ -147,7 +119,7 @@ std::pair<Filler<R>, Frame> make_filler(const Inputs& in, const Params& p, Rect 
 }
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
-  const Rect window = window_of(*in.mesh);
+  const Rect window = picture_window(*in.mesh);
   return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
     auto [filler, frame] = make_filler<R>(in, p, window, ctx);
     return {std::move(filler), {std::move(frame)}};
