@@ -265,7 +265,7 @@ Verdict mip_levels(const Inputs& in, const Params& p, const Context&) {
 // Texel rows and vertex colours carry opacity; whoever shades takes every surface as opaque.
 Verdict transparency(const Inputs& in, const Params&, const Context&) {
   constexpr std::string_view nothing =
-      "it is shown as opaque: nothing blends surfaces behind one another yet";
+      "it is shown as opaque: no node blends by the opacity of a texture or a vertex yet";
   for (const auto& [name, texture] : textures_of(in))
     if (const float alpha = least_opacity(*texture); alpha < 1 - 0x1p-20F)
       return absent(fmt::format("{} has an opacity of {:.3g}, and {}", name, alpha, nothing));
