@@ -1,6 +1,7 @@
 #include "runtime/buffers/column.h"
 
 #include "runtime/buffers/numbers.h"
+#include "runtime/core/pages.h"
 
 #include <fmt/format.h>
 
@@ -17,6 +18,7 @@ constexpr std::array domain_names{"vertex", "corner", "face", "mesh"};
 constexpr std::array kind_names{"f32", "f64", "i32", "u32"};
 
 constexpr std::align_val_t cache_line{64};
+constexpr std::size_t large = 256 * 1024;  // from here on blocks are mapped, and kept
 
 std::shared_ptr<void> aligned_storage(std::size_t rows, std::size_t row_bytes) {
   const auto fail = [&] {
@@ -24,6 +26,12 @@ std::shared_ptr<void> aligned_storage(std::size_t rows, std::size_t row_bytes) {
                      fmt::format("no memory for a column of {} rows of {} bytes", rows, row_bytes));
   };
   if (rows > std::numeric_limits<std::size_t>::max() / 2 / row_bytes) fail();
+  if (rows * row_bytes >= large) try {
+      auto pages = std::make_shared<Pages>(rows * row_bytes, Contents::anything);
+      return {pages, pages->data()};
+    } catch (const std::bad_alloc&) {
+      fail();
+    }
   void* p = ::operator new(rows* row_bytes, cache_line, std::nothrow);
   if (p == nullptr) fail();
   return {p, [](void* data) { ::operator delete(data, cache_line); }};

@@ -1,40 +1,14 @@
 #include "runtime/core/raster.h"
 
 #include "runtime/core/error.h"
-
-#include <sys/mman.h>
+#include "runtime/core/pages.h"
 
 #include <cstring>
+#include <new>
 #include <vector>
 
 namespace frustum {
 namespace {
-
-constexpr std::size_t huge_page = std::size_t{2} << 20;
-
-// Fresh anonymous pages: zero without touching them, on 4 KiB boundaries, given back at once when freed.
-class Pages {
- public:
-  explicit Pages(std::size_t size) : size_(size) {
-    if (size == 0) return;
-    void* p = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (p == MAP_FAILED) throw WorldError("out_of_memory", "no memory for a raster of " + std::to_string(size) + " bytes");
-    data_ = static_cast<std::byte*>(p);
-    // Huge pages where the system has them: a 1080p RGBA raster then costs 16 page faults instead of 8100.
-    if (size >= huge_page) madvise(p, size, MADV_HUGEPAGE);
-  }
-  ~Pages() {
-    if (data_ != nullptr) munmap(data_, size_);
-  }
-  Pages(const Pages&) = delete;
-  Pages& operator=(const Pages&) = delete;
-  std::byte* data() const { return data_; }
-  std::size_t size() const { return size_; }
-
- private:
-  std::byte* data_ = nullptr;
-  std::size_t size_;
-};
 
 std::size_t storage_bytes(const Frame& f) {
   // 2^31 x 2^31 pixels of 16 samples do not fit 64 bits: what wraps around would be a small raster.
@@ -49,6 +23,15 @@ std::size_t storage_bytes(const Frame& f) {
   return sum;
 }
 
+Pages pages_for(const Frame& f, Contents contents) {
+  const std::size_t size = storage_bytes(f);
+  try {
+    return Pages(size, contents);
+  } catch (const std::bad_alloc&) {
+    throw WorldError("out_of_memory", "no memory for a raster of " + std::to_string(size) + " bytes");
+  }
+}
+
 }  // namespace
 
 struct Raster::Storage {
@@ -56,7 +39,7 @@ struct Raster::Storage {
   Pages pages;
   std::vector<std::byte*> planes;
 
-  explicit Storage(Frame f) : frame(std::move(f)), pages(storage_bytes(frame)) {
+  Storage(Frame f, Contents contents) : frame(std::move(f)), pages(pages_for(frame, contents)) {
     const auto values = static_cast<std::size_t>(padded_row(frame.window.width())) *
                         static_cast<std::size_t>(frame.window.height()) * static_cast<std::size_t>(frame.samples());
     std::byte* next = pages.data();
@@ -67,7 +50,8 @@ struct Raster::Storage {
   }
 };
 
-Raster::Raster(Frame frame) : storage_(std::make_shared<const Storage>(std::move(frame))) {}
+Raster::Raster(Frame frame, Contents contents)
+    : storage_(std::make_shared<const Storage>(std::move(frame), contents)) {}
 
 const Frame& Raster::frame() const { return storage_->frame; }
 std::size_t Raster::bytes() const { return storage_->pages.size(); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/core/frame.h"
+#include "runtime/core/pages.h"
 
 #include <cassert>
 #include <cstddef>
@@ -58,12 +59,13 @@ class Tile {
 // Elements from one row to the next that keep every row of a plane on a 64-byte boundary.
 constexpr std::ptrdiff_t padded_row(int width) { return (std::ptrdiff_t{width} + 15) / 16 * 16; }
 
-// A whole frame in memory: planes x samples x rows, every plane and row on a 64-byte boundary, padding zero.
+// A whole frame in memory: planes x samples x rows, every plane and row on a 64-byte boundary.
 // Immutable once published; copies share the storage.
 class Raster {
  public:
   Raster() : Raster(Frame{}) {}
-  explicit Raster(Frame frame);  // zero-filled; throws WorldError("out_of_memory") where the pages cannot be had
+  // Zero, unless the maker writes every pixel; throws WorldError("out_of_memory") where the pages cannot be had.
+  explicit Raster(Frame frame, Contents = Contents::zero);
 
   const Frame& frame() const;
   std::size_t bytes() const;  // of pixel storage

@@ -145,7 +145,7 @@ class PixelRun {
       if (!streamed[r] || job_.whole[r]) continue;
       Frame f = program_.frame(program_.roots()[r]);
       f.window = intersection(f.window, band->rect);
-      band->roots[r].emplace(std::move(f));
+      band->roots[r].emplace(std::move(f), Contents::anything);
     }
     tbb::parallel_for(0, grid_.columns(), [&](int column) {
       const Rect rect = grid_.tile(column, row);

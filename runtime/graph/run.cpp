@@ -388,6 +388,9 @@ RunResult run_graph(const Graph& graph, const RunOptions& options) {
   // More threads than processors are allowed: results do not depend on it, and tests show that.
   const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(threads));
+  // Idle pages count with what the process holds, but not with what the run may hold.
+  constexpr std::uint64_t idle = std::uint64_t{256} << 20;
+  keep_idle_pages(options.memory == 0 ? idle : std::min(idle, options.memory / 32));
   tbb::task_arena arena(threads);
   return arena.execute([&] { return Runner(graph, options).run(); });
 }

@@ -141,7 +141,7 @@ class Pass {
       if (root.why == Whole::demanded) f.window = cut_to_region(f.window);
       area_ = hull(area_, f.window);
       state_.check_memory(raster_bytes(f));
-      whole_.emplace_back(Raster(std::move(f)));
+      whole_.emplace_back(Raster(std::move(f), Contents::anything));
     }
     for (const std::size_t o : pass_.outputs) {
       SinkJob job;
@@ -208,7 +208,7 @@ class Pass {
       Frame f = frame(roots.back());
       job.region = hull(job.region, f.window);
       state_.check_memory(raster_bytes(f));
-      job.whole.emplace_back(Raster(std::move(f)));
+      job.whole.emplace_back(Raster(std::move(f), Contents::anything));
       early_bytes_ += job.whole.back()->bytes();
       state_.ledger.add_bytes(job.whole.back()->bytes());
     }
