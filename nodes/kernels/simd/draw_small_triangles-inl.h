@@ -242,10 +242,8 @@ void test_slots(const LaneTriangles& t, const LaneBox& box, const Ints (&c)[3], 
       const int slot = j * tiny_px + i;
       covered = hn::Or(covered, hn::IfThenElseZero(hit, set(1 << slot)));
       const Floats across = hn::Add(to_float(hn::Add(whole_x, set(i))), fraction_x);
-      Floats depth = hn::Add(row_depth, hn::Mul(t.depth.dx, across));
-      depth = hn::IfThenElse(hn::Lt(depth, t.depth.least), t.depth.least, depth);
-      depth = hn::IfThenElse(hn::Gt(depth, t.depth.greatest), t.depth.greatest, depth);
-      hn::Store(depth, Float(), out.depth[slot]);
+      const Floats depth = hn::Add(row_depth, hn::Mul(t.depth.dx, across));
+      hn::Store(held_between(depth, t.depth.least, t.depth.greatest), Float(), out.depth[slot]);
       for (int k = 0; k < 3; ++k) side[k] = hn::Add(side[k], t.a[k]);
     }
     for (int k = 0; k < 3; ++k) row[k] = hn::Add(row[k], t.b[k]);

@@ -9,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include "nodes/kernels/fill_triangles.h"
+#include "nodes/kernels/simd/order-inl.h"
 
 #if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
@@ -87,8 +88,7 @@ HWY_INLINE void keep_nearest(D d, V depth, M covered, float* HWY_RESTRICT z, std
 template <class D, class V>
 HWY_INLINE V within_corners(D d, const DepthPlane<float>& p, V depth) {
   const auto least = hn::Set(d, p.least), greatest = hn::Set(d, p.greatest);
-  depth = hn::IfThenElse(hn::Lt(depth, least), least, depth);
-  return hn::IfThenElse(hn::Gt(depth, greatest), greatest, depth);
+  return held_between(depth, least, greatest);
 }
 
 // The sample lies at the same place in every pixel.

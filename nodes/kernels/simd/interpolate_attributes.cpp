@@ -10,6 +10,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "nodes/kernels/simd/order-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace frustum::kernels::simd {
 namespace HWY_NAMESPACE {
@@ -85,12 +87,25 @@ HWY_INLINE bool load_faces(const std::uint32_t* ids, int count, int i, Points& p
   return !hn::AllFalse(Float(), seen_from(p, i));
 }
 
+// Whether the points from i on all see one face.
+HWY_INLINE bool one_face(const Points& p, int i) {
+  const hn::RebindToUnsigned<Float> du;
+  return p.face[i] != no_face && hn::AllTrue(du, hn::Eq(hn::Load(du, p.face + i), hn::Set(du, p.face[i])));
+}
+
 // Loads the screen corners of the points from i on, some of which see a face. The others hold a face, too, so
 // that what is loaded for them exists.
 void load_points(const AttributeScene<float>& scene, int i, Points& p) {
   const int end = i + static_cast<int>(hn::Lanes(Float()));
   std::uint32_t held = *std::find_if(p.face + i, p.face + end, [](std::uint32_t f) { return f != no_face; });
   glm::uvec3 vertex = scene.mesh.face[held];
+  if (one_face(p, i)) {
+    // The vertices are still asked for where bases differ.
+    const hn::RebindToUnsigned<Float> du;
+    hn::Store(hn::Set(du, held), du, p.held + i);
+    for (int k = 0; k < 3; ++k) hn::Store(hn::Set(du, vertex[k]), du, p.vertex[k] + i);
+    return;
+  }
   for (; i < end; ++i) {
     const bool seen = p.face[i] != no_face;
     if (seen && p.face[i] != held) {
@@ -105,8 +120,10 @@ void load_points(const AttributeScene<float>& scene, int i, Points& p) {
   }
 }
 
-// Loads the offsets of the samples of the points from i on.
+// Loads the offsets of the samples of the points from i on. Where all pixels have the same samples, they are
+// there since the sample was begun.
 void load_offsets(const SamplePositions& pattern, const Stretch& at, int i, Points& p) {
+  if (pattern.period == 1) return;
   const std::size_t row = pattern.index(at.sample, 0, at.y);
   for (const int end = i + static_cast<int>(hn::Lanes(Float())); i < end; ++i) {
     const std::size_t k = row + static_cast<std::size_t>((at.x + i) & (pattern.period - 1));
@@ -119,7 +136,22 @@ struct LaneCorners {
   Doubles x[3], y[3], per_w[3], q[3];
 };
 
-LaneCorners load_corners(const AttributeScene<float>& scene, const Points& p, int i) {
+// The corners of one face, in every lane.
+HWY_INLINE LaneCorners same_corners(const AttributeScene<float>& scene, std::uint32_t face) {
+  const Double dd;
+  LaneCorners c;
+  for (int k = 0; k < 3; ++k) {
+    const glm::vec4& corner = scene.mesh.position[scene.mesh.face[face][k]];
+    const int bits = scene.mesh.corner_bits;
+    c.x[k] = hn::Set(dd, static_cast<double>(snap(static_cast<double>(corner.x), bits)));
+    c.y[k] = hn::Set(dd, static_cast<double>(snap(static_cast<double>(corner.y), bits)));
+    c.per_w[k] = hn::Set(dd, static_cast<double>(corner.w));
+    c.q[k] = scene.interpolation == Interpolation::hyperbolic ? c.per_w[k] : hn::Set(dd, 1.0);
+  }
+  return c;
+}
+
+HWY_INLINE LaneCorners load_corners(const AttributeScene<float>& scene, const Points& p, int i) {
   const HalfFloat df;
   const Double dd;
   const auto scale = hn::Set(df, static_cast<float>(1 << scene.mesh.corner_bits));
@@ -141,11 +173,11 @@ LaneCorners load_corners(const AttributeScene<float>& scene, const Points& p, in
 
 // WeightedCorners::at for the points from i on.
 template <bool differentiate>
-void weigh(const AttributeScene<float>& scene, const Stretch& at, Points& p, int i) {
+HWY_INLINE void weigh(const AttributeScene<float>& scene, const LaneCorners& c, const Stretch& at, int i,
+                      Points& p) {
   const Double dd;
   const HalfFloat df;
   const HalfInt di;
-  const LaneCorners c = load_corners(scene, p, i);
   const auto scale = hn::Set(dd, double{sample_unit / corner_unit}), unit = hn::Set(dd, double{sample_unit});
   const auto pixel = hn::PromoteTo(dd, hn::Iota(di, at.x + i));
   const auto sx = hn::Add(hn::Mul(pixel, unit), hn::PromoteTo(dd, hn::Load(di, p.offset_x + i)));
@@ -224,61 +256,74 @@ HWY_INLINE void put(const PlaneView<float>& plane, const Stretch& at, const Pixe
   std::copy_n(all, at.count - i, to);
 }
 
-// Whether the points from i on all see one face.
-HWY_INLINE bool one_face(const Points& p, int i) {
-  const hn::RebindToUnsigned<Float> du;
-  return p.face[i] != no_face && hn::AllTrue(du, hn::Eq(hn::Load(du, p.face + i), hn::Set(du, p.face[i])));
+// An attribute over the points of a vector: the value at the corner of greatest weight, what the other two add
+// to it, and the range of the three.
+struct Corners {
+  Floats first, ab, ac, least, greatest;
+};
+
+// Where all points see one face and have the same base.
+HWY_INLINE Corners same_corners(const std::array<const float*, 3>& corner, std::size_t component) {
+  const Float df;
+  const float a = corner[0][component], b = corner[1][component], c = corner[2][component];
+  const float least = std::min({a, b, c}), greatest = std::max({a, b, c});
+  return {hn::Set(df, a), hn::Set(df, b - a), hn::Set(df, c - a), hn::Set(df, least), hn::Set(df, greatest)};
 }
 
-// The attribute at the three corners of each point, base first.
-template <int width>
-HWY_INLINE void load_corners_of(const Attribute<float>& a, const ScreenMesh<float>& mesh, int i, Points& p,
-                                Floats (&corner)[3][4]) {
+HWY_INLINE Corners corners_of(Floats a, Floats b, Floats c) {
+  return {a, hn::Sub(b, a), hn::Sub(c, a), lesser(c, lesser(b, a)), greater(c, greater(b, a))};
+}
+
+// interpolate_attribute for one component, at the points from i on.
+HWY_INLINE void interpolate_component(const Attribute<float>& a, std::size_t component, const Corners& c,
+                                      const Stretch& at, const PixelRect& rect, int i, const Points& p) {
   const Float df;
-  Floats all[3][4];
-  if (one_face(p, i)) {
-    for (int k = 0; k < 3; ++k)
-      for (int c = 0; c < width; ++c)
-        all[k][c] = hn::Set(df, a.data[a.row(mesh, p.face[i], k) * width + static_cast<std::size_t>(c)]);
-  } else {
-    for (int k = 0; k < 3; ++k)
-      hn::LoadInterleaved4(df, p.corner[k][i], all[k][0], all[k][1], all[k][2], all[k][3]);
+  const auto seen = seen_from(p, i);
+  if (a.value[component].data != nullptr) {
+    const auto u = hn::Load(df, p.u + i), v = hn::Load(df, p.v + i);
+    const Floats value = hn::Add(hn::Add(c.first, hn::Mul(u, c.ab)), hn::Mul(v, c.ac));
+    put(a.value[component], at, rect, i, seen, held_between(value, c.least, c.greatest));
   }
+  const auto slope = [&](const PlaneView<float>& plane, const float* du, const float* dv) {
+    if (plane.data == nullptr) return;
+    put(plane, at, rect, i, seen,
+        hn::Add(hn::Mul(hn::Load(df, du + i), c.ab), hn::Mul(hn::Load(df, dv + i), c.ac)));
+  };
+  slope(a.dx[component], p.u_dx, p.v_dx);
+  slope(a.dy[component], p.u_dy, p.v_dy);
+}
+
+HWY_INLINE bool one_base(const Points& p, int i) {
   const hn::RebindToSigned<Float> di;
-  const auto base = hn::Load(di, p.base + i);
-  const auto first = hn::RebindMask(df, hn::Eq(base, hn::Zero(di)));
-  const auto second = hn::RebindMask(df, hn::Eq(base, hn::Set(di, 1)));
-  for (int k = 0; k < 3; ++k)
-    for (int c = 0; c < width; ++c)
-      corner[k][c] =
-          hn::IfThenElse(first, all[k][c], hn::IfThenElse(second, all[(k + 1) % 3][c], all[(k + 2) % 3][c]));
+  return hn::AllTrue(di, hn::Eq(hn::Load(di, p.base + i), hn::Set(di, p.base[i])));
 }
 
 template <int width>
 void interpolate(const Attribute<float>& a, const AttributeScene<float>& scene, const Stretch& at,
                  const PixelRect& rect, int i, Points& p) {
   const Float df;
-  const auto seen = seen_from(p, i);
-  Floats corner[3][4];
-  load_corners_of<width>(a, scene.mesh, i, p, corner);
-  const auto u = hn::Load(df, p.u + i), v = hn::Load(df, p.v + i);
+  if (one_face(p, i) && one_base(p, i)) {
+    std::array<const float*, 3> corner;
+    for (int k = 0; k < 3; ++k)
+      corner[static_cast<std::size_t>(k)] =
+          a.data + a.row(scene.mesh, p.face[i], (p.base[i] + k) % 3) * width;
+    for (std::size_t c = 0; c < width; ++c)
+      interpolate_component(a, c, same_corners(corner, c), at, rect, i, p);
+    return;
+  }
+  Floats all[3][4];
+  for (int k = 0; k < 3; ++k)
+    hn::LoadInterleaved4(df, p.corner[k][i], all[k][0], all[k][1], all[k][2], all[k][3]);
+  const hn::RebindToSigned<Float> di;
+  const auto base = hn::Load(di, p.base + i);
+  const auto first = hn::RebindMask(df, hn::Eq(base, hn::Zero(di)));
+  const auto second = hn::RebindMask(df, hn::Eq(base, hn::Set(di, 1)));
+  const auto pick = [&](Floats x, Floats y, Floats z) {
+    return hn::IfThenElse(first, x, hn::IfThenElse(second, y, z));
+  };
   for (std::size_t c = 0; c < width; ++c) {
-    const Floats first = corner[0][c], second = corner[1][c], third = corner[2][c];
-    const Floats ab = hn::Sub(second, first), ac = hn::Sub(third, first);
-    if (a.value[c].data != nullptr) {
-      const auto lesser = [](Floats x, Floats y) { return hn::IfThenElse(hn::Lt(y, x), y, x); };
-      const auto greater = [](Floats x, Floats y) { return hn::IfThenElse(hn::Lt(x, y), y, x); };
-      const Floats value = hn::Add(hn::Add(first, hn::Mul(u, ab)), hn::Mul(v, ac));
-      const Floats raised = greater(value, lesser(lesser(first, second), third));
-      put(a.value[c], at, rect, i, seen, lesser(raised, greater(greater(first, second), third)));
-    }
-    const auto slope = [&](const PlaneView<float>& plane, const float* du, const float* dv) {
-      if (plane.data == nullptr) return;
-      const auto change = hn::Add(hn::Mul(hn::Load(df, du + i), ab), hn::Mul(hn::Load(df, dv + i), ac));
-      put(plane, at, rect, i, seen, change);
-    };
-    slope(a.dx[c], p.u_dx, p.v_dx);
-    slope(a.dy[c], p.u_dy, p.v_dy);
+    const Floats x = all[0][c], y = all[1][c], z = all[2][c];
+    interpolate_component(a, c, corners_of(pick(x, y, z), pick(y, z, x), pick(z, x, y)), at, rect, i, p);
   }
 }
 
@@ -310,7 +355,7 @@ void interpolate_stretch(const Attribute<float>& a, const AttributeScene<float>&
   // All copies come before all uses: a wide load waits until the narrow stores it covers have left the store
   // queue.
   each_seen(seen, [&](int i) {
-    if (!one_face(p, i)) load_attribute<width>(a, i, p);
+    if (!one_face(p, i) || !one_base(p, i)) load_attribute<width>(a, i, p);
   });
   each_seen(seen, [&](int i) { interpolate<width>(a, scene, at, rect, i, p); });
 }
@@ -331,8 +376,17 @@ void fill_stretch(const AttributeScene<float>& scene, const AttributePlanes<floa
     load_offsets(scene.pattern, at, i, p);
   });
   each_seen(seen, [&](int i) {
-    for (const int end = i + lanes; i < end; i += static_cast<int>(hn::Lanes(Double())))
-      differentiate ? weigh<true>(scene, at, p, i) : weigh<false>(scene, at, p, i);
+    const auto each_half = [&](auto&& corners) HWY_ATTR {
+      for (int half = i; half < i + lanes; half += static_cast<int>(hn::Lanes(Double())))
+        differentiate ? weigh<true>(scene, corners(half), at, half, p)
+                      : weigh<false>(scene, corners(half), at, half, p);
+    };
+    if (one_face(p, i)) {
+      const LaneCorners same = same_corners(scene, p.face[i]);
+      each_half([&](int) HWY_ATTR { return same; });
+    } else {
+      each_half([&](int half) HWY_ATTR { return load_corners(scene, p, half); });
+    }
   });
   each_seen(seen, [&](int i) { put(planes.w, at, rect, i, seen_from(p, i), hn::Load(Float(), p.w + i)); });
   for (const Attribute<float>& a : planes.attributes) {
@@ -354,7 +408,10 @@ void interpolate_attributes(const AttributeScene<float>& scene, PixelRect rect,
   const bool differentiate = std::any_of(planes.attributes.begin(), planes.attributes.end(),
                                          [](const Attribute<float>& a) { return a.differentiates(); });
   Points points{};
-  for (int s = 0; s < scene.pattern.samples; ++s)
+  for (int s = 0; s < scene.pattern.samples; ++s) {
+    const auto sample = static_cast<std::size_t>(s);
+    std::fill_n(points.offset_x, stretch, std::int32_t{scene.pattern.x[sample]});
+    std::fill_n(points.offset_y, stretch, std::int32_t{scene.pattern.y[sample]});
     for (int y = rect.y0; y < rect.y1; ++y) {
       const std::uint32_t* ids = id.row(s, y - rect.y0);
       if (y + 1 < rect.y1) prefetch(scene, planes, ids + id.row_stride, rect.x1 - rect.x0);
@@ -363,6 +420,7 @@ void interpolate_attributes(const AttributeScene<float>& scene, PixelRect rect,
         fill_stretch(scene, planes, differentiate, at, rect, ids + (x - rect.x0), points);
       }
     }
+  }
 }
 
 #else  // without vectors the twin itself

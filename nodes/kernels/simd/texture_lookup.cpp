@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "nodes/kernels/simd/order-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace frustum::kernels::simd::HWY_NAMESPACE {
 namespace {
@@ -180,60 +182,92 @@ HWY_INLINE V pyramid_level(const UvRows<float>& p, const TexelLevel& base, int l
   return hn::IfThenElseZero(hn::Gt(level, hn::Zero(d)), hn::IfThenElse(hn::Lt(level, top), level, top));
 }
 
-// Where one level is read, lane by lane: indices of the four texels, and the fractions between them.
+// Where one level is read, lane by lane: its texels, the offsets of four of them, and the fractions between them.
 struct Taps {
-  HWY_ALIGN std::int32_t texel[4][max_lanes];
-  HWY_ALIGN float fx[max_lanes], fy[max_lanes];
+  const float* level[max_lanes];
+  HWY_ALIGN std::int32_t offset[4][max_lanes];  // in numbers, not texels
+  V fx, fy;
 };
 
 HWY_INLINE void find_taps(const TexelPyramid& p, V s, V t, V width, V height, Taps& taps) {
-  const D d;
   const Di di;
   const Pair x = texel_pair(s, width, p.wrap_u), y = texel_pair(t, height, p.wrap_v);
   const Vi stride = hn::ConvertTo(di, width);
   const Vi top = hn::Mul(y.first, stride), bottom = hn::Mul(y.second, stride);
-  hn::Store(hn::Add(top, x.first), di, taps.texel[0]);
-  hn::Store(hn::Add(top, x.second), di, taps.texel[1]);
-  hn::Store(hn::Add(bottom, x.first), di, taps.texel[2]);
-  hn::Store(hn::Add(bottom, x.second), di, taps.texel[3]);
-  hn::Store(x.fraction, d, taps.fx);
-  hn::Store(y.fraction, d, taps.fy);
+  const auto put = [&](std::size_t k, Vi row, Vi column)
+                       HWY_ATTR { hn::Store(hn::ShiftLeft<2>(hn::Add(row, column)), di, taps.offset[k]); };
+  put(0, top, x.first), put(1, top, x.second), put(2, bottom, x.first), put(3, bottom, x.second);
+  taps.fx = x.fraction, taps.fy = y.fraction;
 }
 
-using D4 = hn::FixedTag<float, 4>;
-using V4 = hn::Vec<D4>;
+// Colours stand in vectors as they do in memory, four numbers a point: vector `g` of a group holds the points
+// from g * blocks on.
+using D4 = hn::CappedTag<float, 4>;
+HWY_INLINE std::size_t blocks() { return hn::Lanes(D()) / 4; }
 
-HWY_INLINE V4 blend(V4 a, V4 b, V4 f) {
-  const auto rises = hn::Lt(a, b);
-  const V4 least = hn::IfThenElse(rises, a, b), greatest = hn::IfThenElse(rises, b, a);
-  V4 v = hn::Add(a, hn::Mul(f, hn::Sub(b, a)));
-  v = hn::IfThenElse(hn::Lt(v, least), least, v);
-  v = hn::IfThenElse(hn::Lt(greatest, v), greatest, v);
-  return hn::IfThenElse(hn::Lt(f, hn::Set(D4(), 1.0F)), v, b);
-}
-
-HWY_INLINE V4 fetch(const float* rgba, const Taps& taps, std::size_t lane) {
+#if HWY_MAX_BYTES >= 64
+HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
+  const hn::Half<D> dh;
   const D4 d4;
-  const auto at = [&](std::size_t k)
-                      HWY_ATTR { return hn::LoadU(d4, rgba + std::ptrdiff_t{taps.texel[k][lane]} * 4); };
-  const V4 fx = hn::Set(d4, taps.fx[lane]);
-  return blend(blend(at(0), at(1), fx), blend(at(2), at(3), fx), hn::Set(d4, taps.fy[lane]));
+  return hn::Combine(D(), hn::Combine(dh, hn::LoadU(d4, from[3]), hn::LoadU(d4, from[2])),
+                     hn::Combine(dh, hn::LoadU(d4, from[1]), hn::LoadU(d4, from[0])));
+}
+#elif HWY_MAX_BYTES == 32
+HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
+  const D4 d4;
+  return hn::Combine(D(), hn::LoadU(d4, from[1]), hn::LoadU(d4, from[0]));
+}
+#else
+HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) { return hn::LoadU(D(), from[0]); }
+#endif
+
+// `between` in every lane.
+HWY_INLINE V blend(V a, V b, V f) {
+  const V v = held_between(hn::Add(a, hn::Mul(f, hn::Sub(b, a))), lesser(a, b), greater(b, a));
+  return hn::IfThenElse(hn::Lt(f, hn::Set(D(), 1.0F)), v, b);
 }
 
-// Four colours side by side become four numbers of each channel.
-HWY_INLINE void put_transposed(const RgbaRows<float>& out, std::size_t lane, const V4 (&c)[4]) {
-  const D4 d4;
-  const hn::Repartition<double, D4> dd;
-  const auto wide = [&](V4 v) HWY_ATTR { return hn::BitCast(dd, v); };
-  const V4 rg01 = hn::InterleaveLower(d4, c[0], c[1]), rg23 = hn::InterleaveLower(d4, c[2], c[3]);
-  const V4 ba01 = hn::InterleaveUpper(d4, c[0], c[1]), ba23 = hn::InterleaveUpper(d4, c[2], c[3]);
-  const V4 channel[4] = {hn::BitCast(d4, hn::InterleaveLower(dd, wide(rg01), wide(rg23))),
-                         hn::BitCast(d4, hn::InterleaveUpper(dd, wide(rg01), wide(rg23))),
-                         hn::BitCast(d4, hn::InterleaveLower(dd, wide(ba01), wide(ba23))),
-                         hn::BitCast(d4, hn::InterleaveUpper(dd, wide(ba01), wide(ba23)))};
-  for (std::size_t k = 0; k < 4; ++k)
-    if (out.plane[k] != nullptr) hn::StoreU(channel[k], d4, out.plane[k] + lane);
+// The four numbers of each point of vector `g` of a group get the number that lane has for the point.
+HWY_INLINE V spread(V of, std::size_t g) {
+  const Di di;
+  const Vi point = hn::ShiftRight<2>(hn::Iota(di, static_cast<std::int32_t>(4 * blocks() * g)));
+  return hn::TableLookupLanes(of, hn::IndicesFromVec(D(), point));
 }
+
+HWY_INLINE V fetch(const Taps& taps, std::size_t g) {
+  const auto at = [&](std::size_t k) HWY_ATTR {
+    const float* from[max_lanes / 4];
+    for (std::size_t b = 0; b < blocks(); ++b) {
+      const std::size_t lane = g * blocks() + b;
+      from[b] = taps.level[lane] + taps.offset[k][lane];
+    }
+    return load_blocks(from);
+  };
+  const V fx = spread(taps.fx, g);
+  return blend(blend(at(0), at(1), fx), blend(at(2), at(3), fx), spread(taps.fy, g));
+}
+
+// What is read of the levels of a pyramid, level by level; one more than there are, which is the last again.
+struct LevelTable {
+  const float* rgba[33];
+  HWY_ALIGN float width[33], height[33];
+
+  explicit LevelTable(const TexelPyramid& p) {
+    for (std::size_t i = 0; i < p.levels.size() + 1; ++i) {
+      const TexelLevel& level = p.levels[std::min(i, p.levels.size() - 1)];
+      rgba[i] = level.rgba;
+      width[i] = static_cast<float>(level.width), height[i] = static_cast<float>(level.height);
+    }
+  }
+  HWY_INLINE void find_taps(const TexelPyramid& p, V s, V t, Vi level, Taps& taps) const {
+    const D d;
+    HWY_ALIGN std::int32_t levels[max_lanes];
+    hn::Store(level, Di(), levels);
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) taps.level[lane] = rgba[levels[lane]];
+    simd::HWY_NAMESPACE::find_taps(p, s, t, hn::GatherIndex(d, width, level),
+                                   hn::GatherIndex(d, height, level), taps);
+  }
+};
 
 void look_up_pyramid(const TexelPyramid& p, Lookup filter, const UvRows<float>& in, std::size_t n,
                      const RgbaRows<float>& out) {
@@ -241,48 +275,37 @@ void look_up_pyramid(const TexelPyramid& p, Lookup filter, const UvRows<float>& 
   const D d;
   const Di di;
   const int last = static_cast<int>(p.levels.size()) - 1;
-  HWY_ALIGN float widths[33], heights[33];
-  for (std::size_t i = 0; i < p.levels.size() + 1; ++i) {
-    const TexelLevel& level = p.levels[std::min(i, p.levels.size() - 1)];
-    widths[i] = static_cast<float>(level.width), heights[i] = static_cast<float>(level.height);
-  }
+  const LevelTable table(p);
   for_each_vector(p, filter, in, n, out, [&](const UvRows<float>& row, const RgbaRows<float>& rgba) HWY_ATTR {
     const M inside = covered(row);
     if (hn::AllFalse(d, inside)) {
       for (std::size_t k = 0; k < 4; ++k) put(rgba, k, inside, hn::Zero(d));
       return;
     }
+    // Points that see nothing read a texel, too, and drop it.
     const V s = fold(hn::LoadU(d, row.u), p.wrap_u);
     const V t = hn::Sub(hn::Set(d, 1.0F), fold(hn::LoadU(d, row.v), p.wrap_v));
     V level = hn::Zero(d);
     if (filter == Lookup::trilinear) level = pyramid_level(row, p.levels[0], last);
-    const Vi fine = hn::ConvertTo(di, level), coarse = hn::Add(fine, hn::Set(di, 1));
+    const Vi fine = hn::ConvertTo(di, level);
     const V fraction = hn::Sub(level, hn::ConvertTo(d, fine));
     const bool blends = !hn::AllFalse(d, hn::Gt(fraction, hn::Zero(d)));
 
     Taps near, far;
-    find_taps(p, s, t, hn::GatherIndex(d, widths, fine), hn::GatherIndex(d, heights, fine), near);
-    if (blends)
-      find_taps(p, s, t, hn::GatherIndex(d, widths, coarse), hn::GatherIndex(d, heights, coarse), far);
-    HWY_ALIGN std::int32_t levels[max_lanes];
-    HWY_ALIGN float fractions[max_lanes], seen[max_lanes];
-    hn::Store(fine, di, levels);
-    hn::Store(fraction, d, fractions);
-    hn::Store(hn::IfThenElseZero(inside, hn::Set(d, 1.0F)), d, seen);
-
-    const D4 d4;
-    for (std::size_t lane = 0; lane < hn::Lanes(d); lane += 4) {
-      V4 c[4];
-      for (std::size_t i = 0; i < 4; ++i) {
-        c[i] = hn::Zero(d4);
-        if (seen[lane + i] == 0) continue;
-        const TexelLevel* at = &p.levels[static_cast<std::size_t>(levels[lane + i])];
-        c[i] = fetch(at->rgba, near, lane + i);
-        if (fractions[lane + i] > 0)
-          c[i] = blend(c[i], fetch(at[1].rgba, far, lane + i), hn::Set(d4, fractions[lane + i]));
+    table.find_taps(p, s, t, fine, near);
+    if (blends) table.find_taps(p, s, t, hn::Add(fine, hn::Set(di, 1)), far);
+    HWY_ALIGN float color[4 * max_lanes];
+    for (std::size_t g = 0; g < 4; ++g) {
+      V c = fetch(near, g);
+      if (blends) {
+        const V f = spread(fraction, g);
+        c = hn::IfThenElse(hn::Gt(f, hn::Zero(d)), blend(c, fetch(far, g), f), c);
       }
-      put_transposed(rgba, lane, c);
+      hn::Store(c, d, color + g * hn::Lanes(d));
     }
+    V channel[4];
+    hn::LoadInterleaved4(d, color, channel[0], channel[1], channel[2], channel[3]);
+    for (std::size_t k = 0; k < 4; ++k) put(rgba, k, inside, channel[k]);
   });
 }
 
