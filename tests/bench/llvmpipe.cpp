@@ -44,6 +44,10 @@ void main() {
   color = vec4(texture(board, t).rgb * (0.1 + 0.8 * facing) + highlight, 1.0);
 })";
 
+constexpr const char* id_shader = R"(#version 330 core
+layout(location = 0) out uint face;
+void main() { face = uint(gl_PrimitiveID); })";
+
 void require(bool holds, const char* what) {
   if (!holds) throw std::runtime_error(std::string("llvmpipe: ") + what);
 }
@@ -58,14 +62,18 @@ GLuint compiled(GLenum stage, const char* text) {
   return shader;
 }
 
-void use_program(const PeerScene& scene) {
+GLuint linked(const char* fragments) {
   const GLuint program = glCreateProgram();
   glAttachShader(program, compiled(GL_VERTEX_SHADER, vertex_shader));
-  glAttachShader(program, compiled(GL_FRAGMENT_SHADER, fragment_shader));
+  glAttachShader(program, compiled(GL_FRAGMENT_SHADER, fragments));
   glLinkProgram(program);
-  GLint linked = 0;
-  glGetProgramiv(program, GL_LINK_STATUS, &linked);
-  require(linked != 0, "the shaders do not link");
+  GLint done = 0;
+  glGetProgramiv(program, GL_LINK_STATUS, &done);
+  require(done != 0, "the shaders do not link");
+  return program;
+}
+
+void use_program(GLuint program, const PeerScene& scene) {
   glUseProgram(program);
   const auto at = [&](const char* name) { return glGetUniformLocation(program, name); };
   glUniformMatrix4fv(at("clip_from_world"), 1, GL_FALSE, &scene.clip_from_world[0][0]);
@@ -106,21 +114,23 @@ void upload_mesh(const PeerScene& scene) {
                GL_STATIC_DRAW);
 }
 
-void make_target(const PeerScene& scene) {
+// A framebuffer of one colour and one depth store; the bound one afterwards.
+GLuint make_target(const PeerScene& scene, GLenum color, int samples) {
   GLuint frame = 0;
   std::array<GLuint, 2> store{};
   glGenFramebuffers(1, &frame);
   glBindFramebuffer(GL_FRAMEBUFFER, frame);
   glGenRenderbuffers(2, store.data());
-  const std::pair<GLenum, GLenum> parts[] = {{GL_COLOR_ATTACHMENT0, GL_RGBA8},
+  const std::pair<GLenum, GLenum> parts[] = {{GL_COLOR_ATTACHMENT0, color},
                                              {GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT32F}};
   for (std::size_t i = 0; i < 2; ++i) {
     glBindRenderbuffer(GL_RENDERBUFFER, store[i]);
-    glRenderbufferStorage(GL_RENDERBUFFER, parts[i].second, scene.width, scene.height);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples > 1 ? samples : 0, parts[i].second, scene.width,
+                                     scene.height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, parts[i].first, GL_RENDERBUFFER, store[i]);
   }
   require(glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE, "no complete framebuffer");
-  glViewport(0, 0, scene.width, scene.height);
+  return frame;
 }
 
 }  // namespace
@@ -128,8 +138,10 @@ void make_target(const PeerScene& scene) {
 struct Llvmpipe::Context {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
+  PeerScene scene{};
   GLsizei indices = 0;
-  int width = 0, height = 0;
+  GLuint shaded = 0, numbered = 0;           // programs
+  GLuint target = 0, averaged = 0, ids = 0;  // framebuffers; averaged: 0 with one sample a pixel
 
   Context() {
     setenv("GALLIUM_DRIVER", "llvmpipe", 1);
@@ -158,32 +170,57 @@ struct Llvmpipe::Context {
 };
 
 Llvmpipe::Llvmpipe(const PeerScene& scene) : context_(std::make_unique<Context>()) {
-  context_->indices = static_cast<GLsizei>(3 * scene.face.size());
-  context_->width = scene.width, context_->height = scene.height;
-  use_program(scene);
+  Context& c = *context_;
+  c.scene = scene;
+  c.indices = static_cast<GLsizei>(3 * scene.face.size());
+  c.shaded = linked(fragment_shader);
+  c.numbered = linked(id_shader);
   upload_texture(scene);
   upload_mesh(scene);
-  make_target(scene);
+  c.ids = make_target(scene, GL_R32UI, 1);
+  if (scene.samples > 1) c.averaged = make_target(scene, GL_RGBA8, 1);
+  c.target = make_target(scene, GL_RGBA8, scene.samples);
+  use_program(c.shaded, scene);
+  glViewport(0, 0, scene.width, scene.height);
   glEnable(GL_DEPTH_TEST);
-  glEnable(GL_CULL_FACE);
+  if (scene.cull) glEnable(GL_CULL_FACE);
   require(glGetError() == GL_NO_ERROR, "an OpenGL call failed");
 }
 
 Llvmpipe::~Llvmpipe() = default;
 
 void Llvmpipe::frame() {
+  const Context& c = *context_;
   const GLfloat background[4] = {0, 0, 0, 0}, farthest = 1;
   glClearBufferfv(GL_COLOR, 0, background);
   glClearBufferfv(GL_DEPTH, 0, &farthest);
-  glDrawElements(GL_TRIANGLES, context_->indices, GL_UNSIGNED_INT, nullptr);
+  glDrawElements(GL_TRIANGLES, c.indices, GL_UNSIGNED_INT, nullptr);
+  if (c.averaged != 0) {
+    const int w = c.scene.width, h = c.scene.height;
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, c.averaged);
+    glBlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, c.target);
+  }
   glFinish();
 }
 
-std::size_t Llvmpipe::covered_pixels() {
-  std::vector<float> depth(static_cast<std::size_t>(context_->width) *
-                           static_cast<std::size_t>(context_->height));
-  glReadPixels(0, 0, context_->width, context_->height, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
-  return static_cast<std::size_t>(std::count_if(depth.begin(), depth.end(), [](float z) { return z < 1; }));
+PeerVisibility Llvmpipe::visibility() {
+  const Context& c = *context_;
+  const auto pixels = static_cast<std::size_t>(c.scene.width) * static_cast<std::size_t>(c.scene.height);
+  PeerVisibility seen{std::vector<std::uint32_t>(pixels), std::vector<float>(pixels)};
+  const GLuint nothing[4] = {~0u, 0, 0, 0};
+  const GLfloat farthest = 1;
+  glBindFramebuffer(GL_FRAMEBUFFER, c.ids);
+  use_program(c.numbered, c.scene);
+  glClearBufferuiv(GL_COLOR, 0, nothing);
+  glClearBufferfv(GL_DEPTH, 0, &farthest);
+  glDrawElements(GL_TRIANGLES, c.indices, GL_UNSIGNED_INT, nullptr);
+  glReadPixels(0, 0, c.scene.width, c.scene.height, GL_RED_INTEGER, GL_UNSIGNED_INT, seen.face.data());
+  glReadPixels(0, 0, c.scene.width, c.scene.height, GL_DEPTH_COMPONENT, GL_FLOAT, seen.depth.data());
+  glBindFramebuffer(GL_FRAMEBUFFER, c.target);
+  use_program(c.shaded, c.scene);
+  require(glGetError() == GL_NO_ERROR, "an OpenGL call failed");
+  return seen;
 }
 
 std::string Llvmpipe::name() const { return reinterpret_cast<const char*>(glGetString(GL_RENDERER)); }
