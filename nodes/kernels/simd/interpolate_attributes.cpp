@@ -327,12 +327,13 @@ void interpolate(const Attribute<float>& a, const AttributeScene<float>& scene, 
   }
 }
 
-// Fills one vector of points that see nothing.
-void fill_empty(const AttributePlanes<float>& planes, const Stretch& at, const PixelRect& rect, int i,
-                const Points& p) {
-  const Float df;
+// Fills points [begin, end) of a stretch, which see nothing.
+void fill_empty(const AttributePlanes<float>& planes, const Stretch& at, const PixelRect& rect, int begin,
+                int end) {
   const auto clear = [&](const PlaneView<float>& plane) {
-    put(plane, at, rect, i, seen_from(p, i), hn::Zero(df));
+    if (plane.data == nullptr) return;
+    float* row = plane.row(at.sample, at.y - rect.y0) + (at.x - rect.x0);
+    std::fill(row + begin, row + end, 0.0F);
   };
   clear(planes.w);
   for (const Attribute<float>& a : planes.attributes)
@@ -365,12 +366,11 @@ void fill_stretch(const AttributeScene<float>& scene, const AttributePlanes<floa
                   Points& p) {
   const int lanes = static_cast<int>(hn::Lanes(Float()));
   std::uint32_t seen = 0;  // a bit for each vector of points
-  for (int i = 0; i < at.count; i += lanes) {
-    if (load_faces(ids, at.count, i, p))
-      seen |= 1u << (i / lanes);
-    else
-      fill_empty(planes, at, rect, i, p);
-  }
+  for (int i = 0; i < at.count; i += lanes)
+    if (load_faces(ids, at.count, i, p)) seen |= 1u << (i / lanes);
+  if (seen == 0) return fill_empty(planes, at, rect, 0, at.count);
+  for (int i = 0; i < at.count; i += lanes)
+    if ((seen >> (i / lanes) & 1) == 0) fill_empty(planes, at, rect, i, std::min(i + lanes, at.count));
   each_seen(seen, [&](int i) {
     load_points(scene, i, p);
     load_offsets(scene.pattern, at, i, p);
