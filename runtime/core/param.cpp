@@ -161,7 +161,12 @@ ParamType text_type() {
 ParamType file_type() {
   ParamType t = scalar<FilePath>(Kind::file, "a file path", &Json::is_string,
                                  [](const Json& j, FilePath& out, ParamReader& reader) {
-                                   out.written = j.get<std::string>();
+                                   auto written = j.get<std::string>();
+                                   // The system would take the part before it for the whole name.
+                                   if (written.find('\0') != std::string::npos)
+                                     return reader.problem("bad_path", fmt::format("{} does not name a file", shown(j)),
+                                                           "a file name", shown(j));
+                                   out.written = std::move(written);
                                    out.resolved = (std::filesystem::path(reader.folder()) / out.written).string();
                                  });
   t.write = [](const void* v) { return Json(static_cast<const FilePath*>(v)->written); };

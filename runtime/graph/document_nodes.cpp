@@ -150,17 +150,22 @@ void DocumentReader::read_overrides(DocumentNode& node, const Json& j) {
   }
 }
 
-// Every "$name" in a value must be a parameter of this graph; "$$" is a '$' of the text itself.
-void DocumentReader::check_dollars(const Json& value, const std::string& pointer) {
+void each_dollar(const Json& value, const std::string& pointer, const VisitDollar& visit) {
   if (value.is_array()) {
     for (std::size_t i = 0; i < value.size(); ++i)
       if (value[i].is_structured() || value[i].is_string())
-        check_dollars(value[i], child_pointer(pointer, i));
+        each_dollar(value[i], child_pointer(pointer, i), visit);
   } else if (value.is_object()) {
-    for (const auto& [key, item] : value.items()) check_dollars(item, child_pointer(pointer, key));
+    for (const auto& [key, item] : value.items()) each_dollar(item, child_pointer(pointer, key), visit);
   } else if (value.is_string()) {
     const auto& text = value.get_ref<const std::string&>();
-    if (!text.starts_with('$') || text.starts_with("$$")) return;
+    if (text.starts_with('$') && !text.starts_with("$$")) visit(text, pointer);
+  }
+}
+
+// Every "$name" in a value must be a parameter of this graph.
+void DocumentReader::check_dollars(const Json& value, const std::string& whole) {
+  each_dollar(value, whole, [&](const std::string& text, const std::string& pointer) {
     const std::string name = text.substr(1);
     doc_->params_used.insert(name);
     if (doc_->find_param(name) != nullptr) return;
@@ -172,7 +177,7 @@ void DocumentReader::check_dollars(const Json& value, const std::string& pointer
              .expected = one_of(dollar_params_),
              .got = text,
              .suggestions = near});
-  }
+  });
 }
 
 void DocumentReader::read_bindings(DocumentNode& node, const Json& j) {

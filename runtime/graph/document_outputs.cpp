@@ -13,11 +13,14 @@
 namespace frustum {
 namespace {
 
-// The first "{...}" in a file name that is not {frame}; empty where there is none.
+// The first "{...}" in a file name that is not {frame}, to the end where it is not closed; empty where there
+// is none.
 std::string unknown_placeholder(std::string_view file) {
   for (std::size_t at; (at = file.find_first_of("{}")) != std::string_view::npos; file.remove_prefix(at)) {
-    if (!file.substr(at).starts_with("{frame}"))
-      return std::string(file.substr(at, file.find('}', at) - at + 1));
+    if (!file.substr(at).starts_with("{frame}")) {
+      const std::size_t end = file.find('}', at);
+      return std::string(file.substr(at, end == std::string_view::npos ? end : end - at + 1));
+    }
     at += std::string_view("{frame}").size();
   }
   return {};

@@ -3,6 +3,7 @@
 
 #include "runtime/graph/document.h"
 
+#include <functional>
 #include <initializer_list>
 #include <span>
 #include <string>
@@ -80,6 +81,11 @@ class DocumentReader {
   std::vector<std::string> also_used_;      // ids
   std::vector<std::string> dollar_params_;  // "$name" of every graph parameter
 };
+
+// Calls `visit` for every text in a value that stands for a graph parameter: "$name", and not "$$...", which is a '$' of
+// the text itself.
+using VisitDollar = std::function<void(const std::string& text, const std::string& pointer)>;
+void each_dollar(const Json& value, const std::string& pointer, const VisitDollar& visit);
 
 // "one of: a, b", for what was expected.
 std::string one_of(std::span<const std::string> names);

@@ -24,9 +24,7 @@ class Flattener {
     Instance& top = *flat.top;
     top.document = &document;
     top.precision = options_.precision.value_or(document.precision.value_or(Precision::single));
-    for (const WrittenParam& p : document.params)
-      top.params[p.name] = {std::make_shared<const Json>(*p.value), document.folder, document.text.get(),
-                            p.pointer};
+    for (const WrittenParam& p : document.params) top.params[p.name] = default_of(document, p);
     apply_settings(top, options_, problems_);
     add_members(top, flat);
     int budget = most_edges;
@@ -70,6 +68,13 @@ class Flattener {
             .expected = "at most " + limit});
   }
 
+  // "$$" is a '$' of the text itself here too; a "$name" stands for nothing, which the reader has reported.
+  static GivenValue default_of(const Document& doc, const WrittenParam& p) {
+    auto value = substitute(*p.value, Instance{});
+    return {std::make_shared<const Json>(value ? std::move(*value) : *p.value), doc.folder, doc.text.get(),
+            p.pointer};
+  }
+
   // Values are taken in the scope of the parent, where they are written; what comes from further outside is stronger.
   std::unique_ptr<Instance> enter(const Instance& parent, const DocumentNode& node) {
     ++instances_;
@@ -81,8 +86,7 @@ class Flattener {
     child->prefix = fmt::format("{}{}/", parent.prefix, node.id);
     const auto own = options_.precision ? std::nullopt : doc.precision;
     child->precision = node.precision.value_or(own.value_or(parent.precision));
-    for (const WrittenParam& p : doc.params)
-      child->params[p.name] = {std::make_shared<const Json>(*p.value), doc.folder, doc.text.get(), p.pointer};
+    for (const WrittenParam& p : doc.params) child->params[p.name] = default_of(doc, p);
     for (const WrittenParam& p : node.params) give(child->params[p.name], p, parent);
     for (const WrittenParam& p : node.overrides) {
       GivenValue value;

@@ -169,11 +169,12 @@ class NodeParams {
   FlatParams read() {
     FlatParams out{.values = node_.type->default_params(), .places = {}};
     for (const ParamField& field : node_.type->params.fields) {
-      const FoundValue found = find_value(node_, field.name, instance_);
+      FoundValue found = find_value(node_, field.name, instance_);
       if (found.missing) whole_ = false;
       if (!found.value) continue;
       read_one(field, found, out.values.get());
       out.places.push_back(place(field.name, found));
+      if (node_.type->check) given_.push_back({&field, std::move(found)});
     }
     if (whole_ && node_.type->check) check(out.values.get());
     return out;
@@ -206,26 +207,79 @@ class NodeParams {
     report_inside(problems_, instance_, std::move(d));
   }
 
+  struct Given {
+    const ParamField* field;
+    FoundValue found;
+  };
+
   // What a node type says of values that are right one by one.
   void check(const void* params) {
+    if (const auto fault = fault_of(params)) report_fault(*fault);
+  }
+
+  std::optional<NodeError> fault_of(const void* params) const {
     try {
       node_.type->check(params);
     } catch (const NodeError& e) {
-      Diagnostic d{.code = e.code,
-                   .pointer = node_.pointer,
-                   .message = e.what(),
-                   .expected = "parameters that fit together"};
-      FoundValue found;
-      if (const ParamField* field = field_of(e.part)) {
-        found = find_value(node_, field->name, instance_);
-        d.expected = field->doc.substr(0, field->doc.find_last_not_of('.') + 1);
-        if (found.value) {
-          d.pointer = pointer_to(field->name, found) + e.part.substr(at_param(field->name).size());
-          d.got = quoted_json(*found.value);
-        }
-      }
-      add(std::move(d), found);
+      return e;
     }
+    return std::nullopt;
+  }
+
+  // A fault of values together is named at one of them. Where that one is left to its default, the author looks for it at
+  // what he wrote: at the value without which all would be well.
+  void report_fault(const NodeError& e) {
+    Diagnostic d{.code = e.code,
+                 .pointer = node_.pointer,
+                 .message = e.what(),
+                 .expected = "parameters that fit together"};
+    const ParamField* field = field_of(e.part);
+    const Given* named = nullptr;
+    for (const Given& g : given_)
+      if (g.field == field) named = &g;
+    std::vector<const Given*> causes = causes_of(e, field);
+    if (named != nullptr || (field != nullptr && causes.empty()))
+      d.expected = field->doc.substr(0, field->doc.find_last_not_of('.') + 1);
+    if (named != nullptr) {
+      d.pointer = pointer_to(field->name, named->found) + e.part.substr(at_param(field->name).size());
+    } else if (!causes.empty()) {
+      named = causes.front();
+      causes.erase(causes.begin());
+      d.pointer = pointer_to(named->field->name, named->found);
+      d.message += fmt::format(" ('{}' is {} unless it is written)", field->name, default_of(*field));
+    }
+    if (named != nullptr) d.got = quoted_json(*named->found.value);
+    for (const Given* cause : causes)
+      if (cause->found.giver != nullptr) add_giver(d, *cause->found.giver, instance_);
+    add(std::move(d), named != nullptr ? named->found : FoundValue());
+  }
+
+  // The other values that were given and without any one of which the fault would not be there.
+  std::vector<const Given*> causes_of(const NodeError& fault, const ParamField* named) const {
+    std::vector<const Given*> out;
+    for (const Given& g : given_) {
+      if (named == nullptr || g.field == named) continue;
+      const auto without = fault_of(values_without(g).get());
+      if (!without || without->code != fault.code || without->part != fault.part) out.push_back(&g);
+    }
+    return out;
+  }
+
+  std::shared_ptr<void> values_without(const Given& left_out) const {
+    std::shared_ptr<void> values = node_.type->default_params();
+    Diagnostics read_before;
+    for (const Given& g : given_) {
+      if (&g == &left_out) continue;
+      ParamReader reader(read_before, "", instance_.document->folder, options_.to_linear);
+      g.field->type->read(*g.found.value, static_cast<char*>(values.get()) + g.field->offset,
+                          g.field->options, reader);
+    }
+    return values;
+  }
+
+  std::string default_of(const ParamField& field) const {
+    return quoted_json(
+        field.type->write(static_cast<const char*>(node_.type->default_params().get()) + field.offset));
   }
 
   // The parameter that a NodeError names, or that holds what it names.
@@ -241,6 +295,7 @@ class NodeParams {
   const Instance& instance_;
   const LoadOptions& options_;
   Diagnostics& problems_;
+  std::vector<Given> given_;
   bool whole_ = true;  // every value was read
 };
 

@@ -190,6 +190,34 @@ TEST(Outputs, AreCheckedAsTheyAreWritten) {
   EXPECT_GT(good, 50);
 }
 
+// The author set near, far is what it is where nobody says otherwise: near is what he looks for.
+TEST(BadGraphs, AFaultOfValuesTogetherStandsAtWhatWasSet) {
+  const auto camera = [](const std::string& params, const LoadOptions& options = {}) {
+    const Loaded l = load_graph_text(
+        R"({ "format": "frustum.graph/1", "nodes": { "camera": { "type": "scene.camera", "params": { )" +
+            params + R"( } } }, "outputs": { "o": { "from": "camera" } } })",
+        "t.json", registry(), options);
+    EXPECT_EQ(l.problems.size(), 1u) << to_text(l.problems);
+    return l.problems.empty() ? Diagnostic() : l.problems.list().front();
+  };
+  const auto has = [](const Diagnostic& d, const char* part) {
+    EXPECT_NE(d.message.find(part), std::string::npos) << d.message;
+  };
+  const Diagnostic set = camera(R"("fov_y": 40, "near": 20000)");
+  EXPECT_EQ(set.pointer, "/nodes/camera/params/near");
+  EXPECT_EQ(set.got, "20000");
+  has(set, "('far' is 1000");
+  EXPECT_EQ(camera(R"("near": 20, "far": 10)").pointer, "/nodes/camera/params/far");
+
+  const LoadOptions forced{.settings = {{"camera:near", "20000"}}};
+  const Diagnostic over = camera(R"("fov_y": 40)", forced);
+  EXPECT_EQ(over.pointer, "/nodes/camera/params/near");
+  has(over, "(from --set camera:near=20000)");
+  const Diagnostic both = camera(R"("far": 10)", forced);
+  EXPECT_EQ(both.pointer, "/nodes/camera/params/far");
+  has(both, "(from --set camera:near=20000)");
+}
+
 TEST(BadGraphs, AHundredThousandBracketsAreOneProblem) {
   for (const std::string open : {"[", "{\"a\":", "{\"nodes\":["}) {
     std::string text;

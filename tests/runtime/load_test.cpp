@@ -62,6 +62,16 @@ TEST(LoadGraph, GraphParametersFillNodesWhereverTheyStand) {
   EXPECT_EQ(param<Json>(*l.graph, "turn", "steps")[0]["rotate"]["degrees"], 2.5);
 }
 
+TEST(LoadGraph, ADollarIsWrittenTwiceInDefaultsToo) {
+  const Loaded l = load(graph_with(
+      R"("teapot": { "type": "io.load_patches", "params": { "file": "$cash" } },
+         "copy": { "type": "io.load_patches", "params": { "file": "$$cash.json" } })",
+      R"("params": { "cash": "$$cash.json" },)"));
+  ASSERT_TRUE(l.graph) << to_text(l.problems);
+  EXPECT_EQ(param<std::string>(*l.graph, "teapot", "file"), "$cash.json");
+  EXPECT_EQ(param<std::string>(*l.graph, "copy", "file"), "$cash.json");
+}
+
 TEST(LoadGraph, PrecisionAndSeedAreTheGraphsUnlessTheNodeSaysOtherwise) {
   const std::string text =
       graph_with(R"("a": { "type": "scene.camera" }, "b": { "type": "scene.camera", "precision": "single" })",
