@@ -201,9 +201,11 @@ class Runner {
     return part;
   }
 
-  const SourcePlace& place_of(const Step& s) const {
+  const SourcePlace& place_of(const Step& s) {
     if (s.kind == Step::Kind::node) return state_.graph.nodes[s.index].place;
     const PixelPass& pass = state_.plan.passes[s.index];
+    for (const std::size_t o : pass.outputs)
+      if (state_.has_failed(o)) return state_.graph.outputs[o].place;
     if (!pass.outputs.empty()) return state_.graph.outputs[pass.outputs.front()].place;
     return state_.graph.nodes[pass.nodes.back()].place;
   }
@@ -328,6 +330,8 @@ class Runner {
     state_.decided(n, ctx.verdicts());
     const auto time = state_.now() - start;
     state_.caches.ran(n, time);
+    auto counters = ctx.counters();
+    if (state_.options.only_facts) counters.emplace_back("live_bytes", state_.ledger.live());
     state_.observe([&](Observer& o) {
       o.done({kind,
               {node.id},
@@ -336,7 +340,7 @@ class Runner {
               bytes,
               state_.caches.any() ? verdict : CacheVerdict::off,
               std::max(0, tbb::this_task_arena::current_thread_index()),
-              ctx.counters()});
+              counters});
     });
   }
 
@@ -377,9 +381,9 @@ std::string_view name_of(CacheVerdict v) {
 
 std::string output_path(const GraphOutput& output, const RunOptions& options) {
   std::string name = output.file;
-  const std::string mark = "{frame}";
-  if (const auto at = name.find(mark); at != std::string::npos)
-    name.replace(at, mark.size(), fmt::format("{:04}", options.frame.value_or(0)));
+  const std::string mark = "{frame}", number = fmt::format("{:04}", options.frame.value_or(0));
+  for (std::size_t at = 0; (at = name.find(mark, at)) != std::string::npos; at += number.size())
+    name.replace(at, mark.size(), number);
   return (std::filesystem::path(options.out_folder) / name).string();
 }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <map>
+#include <type_traits>
 
 namespace frustum {
 namespace {
@@ -31,6 +32,34 @@ void save_output(RunState& state, const GraphOutput& output) {
   };
   state.options.save_buffer(state.buffer(output.layers.front().from), request);
 }
+
+// Remembers which output it was that failed: a pass writes several files at once.
+class NamedSink : public Sink {
+ public:
+  NamedSink(RunState& state, std::size_t output, const SinkRequest& request)
+      : state_(state), output_(output), file_(named([&] { return state.options.make_sink(request); })) {}
+  void write(std::span<const Tile> layers) override {
+    named([&] { file_->write(layers); });
+  }
+  void finish() override {
+    named([&] { file_->finish(); });
+  }
+
+ private:
+  template <class F>
+  std::invoke_result_t<F> named(F&& f) {
+    try {
+      return f();
+    } catch (...) {
+      state_.output_failed(output_);
+      throw;
+    }
+  }
+
+  RunState& state_;
+  std::size_t output_;
+  std::unique_ptr<Sink> file_;
+};
 
 // One pass being run: the operations, what is read from memory, and who wants the pixels.
 class Pass {
@@ -61,6 +90,7 @@ class Pass {
       for (const OutputLayer& layer : graph_.outputs[o].layers)
         if (!state_.buffer(layer.from)) add_root(layer.from);
     decide_unread();
+    tell_need();
   }
 
  private:
@@ -227,11 +257,45 @@ class Pass {
           }
   }
 
+  // What the pass would hold at once if it ran now: what is made whole, the tiles of every thread, and the bands on their
+  // way to files. Told as the work of a pass that takes no time, with what is live besides.
+  void tell_need() {
+    if (roots_.empty()) return;
+    std::uint64_t whole = 0, bands = 0;
+    for (std::size_t i = 0; i < roots_.size(); ++i) {
+      const Frame& f = frame(roots_[i]);
+      area_ = hull(area_, f.window);
+      if (i < pass_.roots.size()) whole += raster_bytes(f);
+    }
+    const TileProgram program(ops_, roots_);
+    const int edge = state_.options.tile_edge > 0 ? state_.options.tile_edge : program.choose_edge();
+    const TileProgram::Estimate estimate = program.estimate(edge);
+    if (estimate.worst && estimate.area_ratio > 1.5 &&
+        !small_picture(edge))  // as cut_where_margins_are_wide()
+      for (const auto& made : ops_[*estimate.worst].prepared->frames) whole += raster_bytes(*made);
+    for (std::size_t i = pass_.roots.size(); i < roots_.size(); ++i) bands += band_bytes(roots_[i], edge);
+    const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+    const std::uint64_t need = whole + bands + threads * estimate.live_bytes;
+    state_.ledger.add_bytes(need);
+    WorkDone told{.kind = WorkDone::Kind::pixels, .nodes = {}, .bytes = need, .counters = {}};
+    for (const std::size_t n : pass_.nodes) told.nodes.push_back(graph_.nodes[n].id);
+    told.counters.emplace_back("live_bytes", state_.ledger.live());
+    state_.ledger.remove_bytes(need);
+    state_.observe([&](Observer& o) { o.done(told); });
+  }
+
+  // Rows of tiles wait for those before them: four are on their way at most.
+  std::uint64_t band_bytes(const TileRoot& root, int edge) const {
+    return 4 * frame(root).bytes_per_pixel() * static_cast<std::uint64_t>(area_.width()) *
+           static_cast<std::uint64_t>(edge);
+  }
+
   // ----- sinks
 
   void open_sinks() {
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      const GraphOutput& output = graph_.outputs[pass_.outputs[i]];
+      const std::size_t index = pass_.outputs[i];
+      const GraphOutput& output = graph_.outputs[index];
       SinkRequest request;
       for (std::size_t l = 0; l < output.layers.size(); ++l) {
         const Frame& f = layer_frame(jobs_[i].layers[l]);
@@ -252,9 +316,11 @@ class Pass {
       request.warn = [this, &output](std::string_view code, const std::string& message) {
         warn_of_output(state_, output, std::string(code), message);
       };
-      if (request.region.empty())
+      if (request.region.empty()) {
+        state_.output_failed(index);
         throw NodeError("empty_region", fmt::format("output '{}' has no pixels in the region", output.name));
-      sinks_.push_back(state_.options.make_sink(request));
+      }
+      sinks_.push_back(std::make_unique<NamedSink>(state_, index, request));
       jobs_[i].sink = sinks_.back().get();
     }
   }
@@ -269,9 +335,7 @@ class Pass {
       const std::uint64_t tiles = program.estimate(edge).live_bytes * static_cast<std::uint64_t>(threads);
       std::uint64_t bands = 0;
       for (std::size_t r = 0; r < roots_.size(); ++r)
-        if (!whole_[r])
-          bands += 4 * program.frame(roots_[r]).bytes_per_pixel() *
-                   static_cast<std::uint64_t>(area_.width()) * static_cast<std::uint64_t>(edge);
+        if (!whole_[r]) bands += band_bytes(roots_[r], edge);
       try {
         state_.check_memory(tiles + bands + whole_bytes());
         return edge;

@@ -106,6 +106,16 @@ void RunState::culprit(Culprit c, std::size_t order) {
   culprits_.emplace_back(order, std::move(c));
 }
 
+void RunState::output_failed(std::size_t output) {
+  const std::lock_guard lock(mutex_);
+  failed_outputs_.insert(output);
+}
+
+bool RunState::has_failed(std::size_t output) {
+  const std::lock_guard lock(mutex_);
+  return failed_outputs_.contains(output);
+}
+
 void RunState::decided(std::size_t node, const std::vector<std::pair<std::string, Verdict>>& verdicts) {
   const std::lock_guard lock(mutex_);
   for (const auto& [effect, verdict] : verdicts)

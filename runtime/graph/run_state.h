@@ -8,6 +8,7 @@
 #include <atomic>
 #include <map>
 #include <mutex>
+#include <set>
 
 namespace frustum {
 
@@ -55,6 +56,9 @@ class RunState {
   void warning(std::size_t node, const std::string& code,
                const std::string& message);  // to the observer as well
   void culprit(Culprit c, std::size_t order);
+  // The file of an output cannot be made or written: what ends its pass is told at the output.
+  void output_failed(std::size_t output);
+  bool has_failed(std::size_t output);
   void decided(std::size_t node, const std::vector<std::pair<std::string, Verdict>>& verdicts);
   // What every file of this run says of where it comes from: program and version, title and digest of the graph.
   std::vector<std::pair<std::string, std::string>> metadata() const;
@@ -83,6 +87,7 @@ class RunState {
   std::vector<std::pair<std::size_t, Diagnostic>> problems_;
   std::vector<std::pair<std::size_t, Culprit>> culprits_;
   std::vector<std::pair<std::size_t, NodeVerdict>> verdicts_;
+  std::set<std::size_t> failed_outputs_;
 };
 
 // run_pass.cpp: walks the tiles of one pass of the plan, makes its roots whole and writes its outputs.

@@ -157,6 +157,22 @@ TEST(CliEnds, ASecondInterruptLeavesNoTemporaryFile) {
   EXPECT_TRUE(std::filesystem::is_empty(out));
 }
 
+// A pass writes its files side by side: the one that cannot be written is named, not the first of them.
+TEST(CliEnds, TheOutputThatCannotBeWrittenIsNamed) {
+  const TempFolder folder;
+  const std::string image = R"("i": { "type": "io.load_image", "params": { "file": ")" + root +
+                            R"(/tests/bad/parts/pixels.png" } })";
+  const auto graph = folder.write("g.json", graph_with(image, R"("good": { "from": "i", "file": "good.png" },
+    "bad": { "from": "i", "file": "bad.png" }, "last": { "from": "i", "file": "last.png" })"));
+  std::filesystem::create_directories(folder.file("out/bad.png"));
+  const auto r = frustum({"run", graph, "--out", folder.file("out"), "--json"});
+  EXPECT_EQ(r.code, 3);
+  const auto d = json::parse(r.out)["diagnostics"][0];
+  EXPECT_EQ(d["code"], "cannot_write_file");
+  EXPECT_EQ(d["pointer"], "/outputs/bad");
+  EXPECT_GT(d["line"], 0);
+}
+
 // ----- output that nobody gets
 
 TEST(CliEnds, OutputThatIsLostIsExit3) {
