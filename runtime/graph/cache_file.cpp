@@ -1,5 +1,7 @@
 #include "runtime/graph/cache_file.h"
 
+#include "runtime/core/temporary_files.h"
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -87,9 +89,11 @@ std::string_view name_of(FileFault f) {
 
 CacheFileWriter::CacheFileWriter(const std::filesystem::path& temporary, CacheContent content)
     : temporary_(temporary), content_(content), block_(std::make_unique<std::byte[]>(block_bytes)) {
+  remember_temporary_file(temporary_);
   file_ = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file_ < 0) {
     fault_ = fault_of_errno(errno);
+    forget_temporary_file(temporary_);
     return;
   }
   const Header room{};
@@ -100,6 +104,7 @@ CacheFileWriter::~CacheFileWriter() {
   if (file_ < 0) return;
   ::close(file_);
   ::unlink(temporary_.c_str());
+  forget_temporary_file(temporary_);
 }
 
 void CacheFileWriter::put(const std::byte* data, std::size_t bytes) {
@@ -150,6 +155,7 @@ FileFault CacheFileWriter::commit(const Digest& key, const std::filesystem::path
     fault_ = fault_of_errno(errno);
     ::unlink(temporary_.c_str());
   }
+  forget_temporary_file(temporary_);
   return fault_;
 }
 

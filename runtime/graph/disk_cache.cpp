@@ -1,6 +1,7 @@
 #include "runtime/graph/disk_cache.h"
 
 #include "runtime/core/error.h"
+#include "runtime/core/temporary_files.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -291,12 +292,14 @@ std::optional<std::string> DiskCache::load_index(std::string_view graph) {
 void DiskCache::store_index(std::string_view graph, std::string_view text) {
   if (!storing_) return;
   const fs::path part = temporary();
+  remember_temporary_file(part);
   std::ofstream out(part, std::ios::binary);
   out << text;
   out.close();
   std::error_code error;
   if (out) fs::rename(part, index_path(folder_, graph), error);
   if (!out || error) fs::remove(part, error);
+  forget_temporary_file(part);
 }
 
 }  // namespace frustum

@@ -1,6 +1,7 @@
 #include "runtime/core/temporary_files.h"
 
 #include "runtime/core/partial_file.h"
+#include "runtime/graph/cache_file.h"
 #include "tests/support/temp_file.h"
 
 #include <gtest/gtest.h>
@@ -49,6 +50,23 @@ TEST(TemporaryFiles, OfPartialFilesAreThoseThatAreNotFinished) {
   EXPECT_TRUE(exists(folder.file("finished")));
   std::filesystem::remove(folder.file("finished"));
   EXPECT_TRUE(is_empty(folder.path()));
+}
+
+TEST(TemporaryFiles, OfTheCacheAreThoseThatAreNotFinished) {
+  const test::TempFolder folder;
+  CacheFileWriter finished(folder.file("part"), CacheContent::notes);
+  finished.write("a", 1);
+  EXPECT_EQ(finished.commit({}, folder.file("finished")), FileFault::none);
+  CacheFileWriter begun(folder.file("begun"), CacheContent::notes);
+  begun.write("b", 1);
+  ASSERT_TRUE(exists(folder.file("begun")));
+  remove_temporary_files();
+  EXPECT_FALSE(exists(folder.file("begun")));
+  EXPECT_TRUE(exists(folder.file("finished")));
+  // A name that is free again may be another's.
+  const std::string other = folder.write("part", "c");
+  remove_temporary_files();
+  EXPECT_TRUE(exists(other));
 }
 
 // A handler may run while every thread is busy with files.
