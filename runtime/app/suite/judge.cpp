@@ -13,7 +13,8 @@ namespace frustum {
 namespace {
 
 std::string shown(const Diagnostic& d) {
-  return fmt::format("{} at {}:{}:{} {}: {}", d.code, d.file, d.line, d.column, d.pointer, d.message);
+  const std::string place = d.line == 0 ? d.file : fmt::format("{}:{}:{}", d.file, d.line, d.column);
+  return fmt::format("{} at {} {}: {}", d.code, place, d.pointer, d.message);
 }
 
 // Runs bypass the session's cache: what they cost must not depend on the cases before.
@@ -40,12 +41,25 @@ class Judge {
     LoadOptions load;
     load.settings = case_.settings;
     load.precision = case_.precision;
-    Loaded loaded = session_.load(case_.graph, std::move(load));
+    Loaded loaded = load_graph_file(case_.graph, std::move(load), case_.pointer + "/graph");
     if (loaded.graph) run_graph_of(*loaded.graph, loaded.problems);
     judge_problems(loaded.problems);
   }
 
  private:
+  // A graph that is not there is a fault of the suite, told where the suite names it, and may be expected.
+  Loaded load_graph_file(const std::string& path, LoadOptions options, const std::string& pointer) {
+    try {
+      return session_.load(path, std::move(options));
+    } catch (const WorldError& e) {
+      if (e.code != "cannot_read_file") throw;
+      Loaded none;
+      none.problems.add(
+          {.code = e.code, .pointer = pointer, .message = e.what(), .file = result_.suite_file});
+      return none;
+    }
+  }
+
   void fail(std::string sentence) { result_.failures.push_back(std::move(sentence)); }
 
   // Every port that a check names; of a trace all; without checks, what the graph gives out.
@@ -154,7 +168,8 @@ class Judge {
     if (other.graph.empty()) load.settings = case_.settings, load.precision = case_.precision;
     load.settings.insert(load.settings.end(), other.settings.begin(), other.settings.end());
     if (other.precision) load.precision = other.precision;
-    const Loaded loaded = session_.load(other.graph.empty() ? case_.graph : other.graph, std::move(load));
+    const Loaded loaded = load_graph_file(other.graph.empty() ? case_.graph : other.graph, std::move(load),
+                                          check.pointer + (check.metamorphic ? "/metamorphic" : "/same_as"));
     for (const Diagnostic& d : loaded.problems.list())
       if (d.severity == Severity::error) fail(fmt::format("{}: {}: {}", check.port, what, shown(d)));
     if (!loaded.graph) return;

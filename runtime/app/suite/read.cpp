@@ -103,6 +103,7 @@ class Reader {
       parser_.missing("a case needs an \"id\" and a \"graph\"");
     if (!k.id.empty() && !case_ids_.insert(k.id).second) duplicate(k.id);
     SuiteCase c;
+    c.pointer = at_.pointer();
     c.id = k.id, c.tags = k.tags, c.precision = k.precision;
     c.skip = k.skip, c.timeout = k.timeout, c.retry = k.retry;
     Variation v = presets_of(k.use);

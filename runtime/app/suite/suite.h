@@ -37,8 +37,9 @@ struct Waiver {
 
 // One run: presets are resolved, one combination of the matrix is chosen, one file of the pattern is taken.
 struct SuiteCase {
-  std::string id;     // "teapot[samples=4]", "examples/clip/homogeneous"
-  std::string graph;  // the path of the graph file
+  std::string id;       // "teapot[samples=4]", "examples/clip/homogeneous"
+  std::string graph;    // the path of the graph file
+  std::string pointer;  // of the case in the suite's file
   std::vector<Setting> settings;
   std::optional<Precision> precision;  // above the graph's own
   std::vector<SuiteCheck> checks;
