@@ -81,12 +81,13 @@ Raster one_sample(const Raster& raster, int sample) {
   return out;
 }
 
-void save_raster(const Raster& raster, const std::string& path) {
+void save_raster(const Raster& raster, const std::string& path, const FileWarning& warn) {
   const Rect window = raster.frame().window;
   SinkRequest request;
   request.path = path;
   request.region = request.display_window = window;
   request.layers = {{"", raster.frame()}};
+  request.warn = warn;
   if (path.ends_with(".exr")) request.bits = 32;  // every bit of a float; colours are half otherwise
   const auto sink = open_image_sink(request);
   const Tile all = raster.view();
@@ -128,14 +129,19 @@ Json csv_table(const std::string& path) {
   return out;
 }
 
-void save_buffer(const Buffer& buffer, const std::string& path, int sample, const FileWarning& warn) {
+void save_buffer(const Buffer& buffer, const std::string& path, std::optional<int> sample,
+                 const FileWarning& warn) {
   const std::vector<std::string> forms = saved_as(buffer.type());
   const bool whole = std::any_of(forms.begin(), forms.end(),
                                  [&](const std::string& form) { return path.ends_with("." + form); });
-  if (buffer.type().is_pixels() && !whole)
-    save_raster(one_sample(buffer.type().raster(buffer.data()), sample), path);
-  else
-    save_buffer_file(buffer, {.path = path, .warn = warn});
+  if (!buffer.type().is_pixels() || whole) return save_buffer_file(buffer, {.path = path, .warn = warn});
+  const Raster& raster = buffer.type().raster(buffer.data());
+  const Frame& frame = raster.frame();
+  if (!sample && warn && frame.samples() > 1 && frame.find("R"))
+    warn("sampled_output",
+         fmt::format("{} gets the first of {} samples a pixel: supersample.resolve would filter them", path,
+                     frame.samples()));
+  save_raster(one_sample(raster, sample.value_or(0)), path, warn);
 }
 
 }  // namespace frustum

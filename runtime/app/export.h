@@ -4,6 +4,7 @@
 #include "runtime/core/buffer.h"
 #include "runtime/core/sink.h"
 
+#include <optional>
 #include <string>
 
 namespace frustum {
@@ -12,9 +13,10 @@ namespace frustum {
 // it is.
 Raster one_sample(const Raster& raster, int sample);
 
-// Writes all planes as one layer; the raster has one value a pixel. Throws WorldError where the file
-// cannot be made, NodeError where the format cannot hold the planes.
-void save_raster(const Raster& raster, const std::string& path);
+// Writes all planes as one layer; the raster has one value a pixel. Warns of linear colours in a format that
+// shows its numbers as they are. Throws WorldError where the file cannot be made, NodeError where the format
+// cannot hold the planes.
+void save_raster(const Raster& raster, const std::string& path, const FileWarning& warn = {});
 
 // The pixels of an image file. Throws WorldError where it cannot be read.
 Raster load_raster(const std::string& path);
@@ -28,9 +30,11 @@ Buffer load_buffer(const std::string& path);
 // quote.
 Json csv_table(const std::string& path);
 
-// Pixels (the given sample of each) to an image file, and any buffer to a file of its kind: a mesh to .ply,
-// .obj, .glb or .gltf, what has a table form to .csv, everything to .json. Throws NodeError("unknown_format")
-// where it is none of these.
-void save_buffer(const Buffer& buffer, const std::string& path, int sample, const FileWarning& warn = {});
+// Pixels (the given sample of each; the first, with a warning where there are more and they have colours, if
+// none is given) to an image file, and any buffer to a file of its kind: a mesh to .ply, .obj, .glb or .gltf,
+// what has a table form to .csv, everything to .json. Throws NodeError("unknown_format") where it is none of
+// these.
+void save_buffer(const Buffer& buffer, const std::string& path, std::optional<int> sample = {},
+                 const FileWarning& warn = {});
 
 }  // namespace frustum

@@ -65,7 +65,8 @@ void add_run_arguments(CLI::App& app, RunArguments& args) {
                  "Threads; 0 takes every processor. The bytes do not depend on it.")
       ->check(quiet(CLI::Range(0, 4096)))
       ->type_name("N");
-  app.add_option("--memory", args.memory, "Most bytes of buffers that may be live at once.")
+  app.add_option("--memory", args.memory,
+                 "Most bytes of buffers that may be live at once; a run that needs more is refused, exit 2.")
       ->type_name("SIZE");
   app.add_option("--region", args.region, "Only these pixels; the same bytes as that part of the whole.")
       ->type_name("X,Y,W,H");
@@ -99,6 +100,24 @@ void apply(const RunArguments& args, RunOptions& options) {
   for (const auto& [target, name] : choices(Simd{}))
     if (args.simd == name && !use_simd(target))
       throw WorldError("unsupported_simd", fmt::format("this processor has no {}", name));
+}
+
+void check_region(const Graph& graph, const RunOptions& options, const RunResult& result,
+                  Diagnostics& problems) {
+  if (!options.region) return;
+  for (const auto& [port, buffer] : result.buffers) {
+    if (!buffer.type().is_pixels() || !buffer.type().raster(buffer.data()).frame().window.empty()) continue;
+    const Rect& r = *options.region;
+    const SourcePlace& place = graph.nodes[port.node].place;
+    problems.add({.code = "empty_region",
+                  .pointer = place.pointer,
+                  .message = fmt::format("{} has no pixels in the region {},{},{},{}", graph.name(port), r.x0,
+                                         r.y0, r.width(), r.height()),
+                  .expected = "a region that meets the picture",
+                  .file = place.file,
+                  .line = place.line,
+                  .column = place.column});
+  }
 }
 
 std::vector<std::string> assignments(const std::string& text) {

@@ -77,6 +77,9 @@ void add_run_arguments(CLI::App&, RunArguments&);
 // Throws UsageError. A --simd that the processor lacks is WorldError("unsupported_simd").
 void apply(const RunArguments&, RunOptions&);
 
+// An error for every wanted port of pixels that has none in the region.
+void check_region(const Graph&, const RunOptions&, const RunResult&, Diagnostics&);
+
 // "samples=64,lit:interpolation=phong" as its parts; commas inside brackets belong to a value.
 std::vector<std::string> assignments(const std::string& text);
 // ----- where buffers are kept from one run to the next

@@ -19,7 +19,12 @@ struct Arguments {
 
 Measured measure_files(const Arguments& args, const std::vector<std::string>& names) {
   const auto is_table = [](const std::string& path) { return path.ends_with(".csv"); };
-  if (!is_table(args.a) || !is_table(args.b)) return measure(load_buffer(args.a), load_buffer(args.b), names);
+  if (is_table(args.a) != is_table(args.b))
+    throw NodeError(
+        "not_comparable",
+        fmt::format("{} is a table and {} is none: frustum inspect --save makes a .csv of any buffer",
+                    is_table(args.a) ? args.a : args.b, is_table(args.a) ? args.b : args.a));
+  if (!is_table(args.a)) return measure(load_buffer(args.a), load_buffer(args.b), names);
   return measure(compare_tables(csv_table(args.a), csv_table(args.b)), names);
 }
 

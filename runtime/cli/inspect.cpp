@@ -4,15 +4,15 @@
 #include "runtime/app/provenance.h"
 #include "runtime/buffers/fragments.h"
 #include "runtime/cli/command.h"
+#include "runtime/cli/inspect_text.h"
 #include "runtime/core/text.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 
 namespace frustum::cli {
 namespace {
@@ -25,77 +25,8 @@ struct Arguments {
   std::string port, pixel, provenance, save;
   bool table = false;
   std::size_t first = 0, rows = 20;
-  int sample = 0;
+  std::optional<int> sample;
 };
-
-bool is_scalar_list(const Json& j) {
-  return j.is_array() && std::none_of(j.begin(), j.end(), [](const Json& e) { return e.is_structured(); });
-}
-
-std::string scalar(const Json& j) {
-  if (j.is_string()) return j.get<std::string>();
-  if (j.is_null()) return "none";
-  if (j.is_number_float()) return fmt::format("{:.9g}", j.get<double>());
-  if (!is_scalar_list(j)) return j.dump();
-  std::vector<std::string> items;
-  for (const Json& e : j) items.push_back(scalar(e));
-  return fmt::format("{}", fmt::join(items, " "));
-}
-
-// Counts as one bar each; a bucket that holds anything shows.
-std::string sparkline(const Json& counts) {
-  double most = 0;
-  for (const Json& n : counts) most = std::max(most, n.get<double>());
-  constexpr std::array<std::string_view, 8> bars{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
-  std::string out;
-  for (const Json& n : counts) {
-    const double share = most > 0 ? n.get<double>() / most : 0;
-    out += share == 0 ? " " : bars[static_cast<std::size_t>(std::min(7.0, share * 8))];
-  }
-  return out;
-}
-
-// The cells of one object by column: nested percentiles become p5, p50 ...
-std::vector<std::pair<std::string, std::string>> cells(const Json& item) {
-  std::vector<std::pair<std::string, std::string>> out;
-  for (const auto& [key, value] : item.items()) {
-    if (key == "percentiles")
-      for (const auto& [percent, at] : value.items()) out.emplace_back("p" + percent, scalar(at));
-    else
-      out.emplace_back(key, key == "histogram" ? sparkline(value) : scalar(value));
-  }
-  return out;
-}
-
-// Objects as one row each; columns in order of first appearance.
-std::string object_table(const Json& list, int indent) {
-  std::vector<std::vector<std::string>> rows(1);
-  for (const Json& item : list) {
-    std::vector<std::string> row(rows.front().size());
-    for (auto& [column, text] : cells(item)) {
-      const auto found = std::find(rows.front().begin(), rows.front().end(), column);
-      const auto at = static_cast<std::size_t>(found - rows.front().begin());
-      if (found == rows.front().end()) rows.front().push_back(column), row.emplace_back();
-      row[at] = std::move(text);
-    }
-    rows.push_back(std::move(row));
-  }
-  return aligned(rows, indent);
-}
-
-std::string lines(const Json& object, int indent = 0) {
-  std::string out;
-  const std::string margin(static_cast<std::size_t>(indent), ' ');
-  for (const auto& [key, value] : object.items()) {
-    if (value.is_object())
-      out += margin + key + "\n" + lines(value, indent + 2);
-    else if (value.is_array() && !value.empty() && !is_scalar_list(value) && value.front().is_object())
-      out += margin + key + "\n" + object_table(value, indent + 2);
-    else
-      out += fmt::format("{}{}: {}\n", margin, key, scalar(value));
-  }
-  return out;
-}
 
 Json table_json(const Buffer& buffer, std::size_t first, std::size_t count) {
   const Json table =
@@ -120,16 +51,6 @@ Json pixel_json(const Buffer& buffer, int x, int y) {
     samples.push_back(std::move(sample));
   }
   return {{"x", x}, {"y", y}, {"samples", samples}};
-}
-
-std::string table_text(const Json& table, std::size_t first) {
-  std::vector<std::vector<std::string>> rows{{"row"}};
-  for (const Json& c : table["columns"]) rows.front().push_back(scalar(c));
-  for (const Json& r : table["rows"]) {
-    rows.push_back({std::to_string(first + rows.size() - 1)});
-    for (const Json& v : r) rows.back().push_back(scalar(v));
-  }
-  return aligned(rows) + fmt::format("{} rows in all\n", table["total"].get<std::size_t>());
 }
 
 Json header_json(const std::string& name, const Buffer& buffer) {
@@ -175,8 +96,19 @@ Rect window_of(const Buffer& buffer, const std::string& port) {
   return buffer.type().raster(buffer.data()).frame().window;
 }
 
+// What is told of a file names it.
+void save(const Buffer& buffer, const Arguments& args, Diagnostics& warnings) {
+  save_buffer(buffer, args.save, args.sample, [&](std::string_view code, const std::string& message) {
+    const bool named = message.starts_with(args.save);
+    warnings.add({.code = std::string(code),
+                  .severity = Severity::warning,
+                  .pointer = "",
+                  .message = named ? message : fmt::format("{}: {}", args.save, message)});
+  });
+}
+
 int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Arguments& args,
-                const Diagnostics& warnings, bool json) {
+                Diagnostics& warnings, bool json) {
   Json out = header_json(graph.name(port), buffer);
   std::string text;
   if (!args.pixel.empty()) {
@@ -188,26 +120,19 @@ int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Ar
       text += table_text(out["pixel"], lists->of_pixel(at[0], at[1]).begin);
     } else {
       out["pixel"] = pixel_json(buffer, at[0], at[1]);
-      text += object_table(out["pixel"]["samples"], 0);
+      text += samples_text(out["pixel"]["samples"]);
     }
   }
-  if (args.table && (args.pixel.empty() || !buffer.is<Fragments>())) {
+  if (args.table) {
     out["table"] = table_json(buffer, args.first, args.rows);
     text += table_text(out["table"], args.first);
   }
   if (text.empty()) {
     out["summary"] = buffer.type().summary(buffer.data());
-    text = lines(out);
+    text = buffer_text(out);
   }
   if (!args.save.empty()) {
-    Diagnostics warnings;
-    save_buffer(buffer, args.save, args.sample, [&](std::string_view code, const std::string& message) {
-      warnings.add({.code = std::string(code),
-                    .severity = Severity::warning,
-                    .pointer = "",
-                    .message = fmt::format("{}: {}", args.save, message)});
-    });
-    report(warnings);
+    save(buffer, args, warnings);
     out["saved"] = args.save;
     text += args.save + "\n";
   }
@@ -230,8 +155,12 @@ int inspect(const Arguments& args, bool json) {
   options.cancel = &cancel_flag();
   if (!args.provenance.empty()) return show_provenance(session, *graph, *port, args, options, warnings, json);
   options.demand.ports = {*port};
+  if (options.region && !graph->port(*port).types.front()->is_pixels())
+    throw UsageError(fmt::format("--region {}: {} holds no pixels", args.run.region, graph->name(*port)));
   const RunResult result = session.run(*graph, options);
   warnings.add(result.problems);
+  check_region(*graph, options, result, warnings);
+  if (warnings.has_errors() && result.end == RunResult::End::done) return fail(warnings, json);
   if (result.end != RunResult::End::done) return fail(warnings, json, static_cast<Exit>(exit_code(result)));
   return show_buffer(*graph, *port, result.buffers.at(*port), args, warnings, json);
 }
@@ -248,27 +177,34 @@ void add_inspect(CLI::App& app, Invocation& chosen) {
   c.add_option("port", args->port, "A port, a node (its first output) or an output of the graph.")
       ->required()
       ->type_name("NODE.PORT");
-  c.add_option("--pixel", args->pixel, "Every plane of every sample of one pixel, or its lists of fragments.")
-      ->type_name("X,Y");
-  c.add_option("--provenance", args->provenance,
-               "The pixel's samples, their triangles, and the node that made them.")
-      ->type_name("X,Y");
-  c.add_flag("--table", args->table, "The values as rows.");
+  auto* pixel = c.add_option("--pixel", args->pixel,
+                             "Every plane of every sample of one pixel, or its lists of fragments.")
+                    ->type_name("X,Y");
+  auto* table = c.add_flag("--table", args->table, "The values as rows.")->excludes(pixel);
   c.add_option("--first", args->first, "The first row of the table.")
       ->check(quiet(CLI::Range(std::int64_t{0}, most_rows)))
+      ->needs(table)
       ->type_name("ROW");
   c.add_option("--rows", args->rows, "Rows of the table.")
       ->check(quiet(CLI::Range(std::int64_t{1}, most_rows)))
       ->capture_default_str()
+      ->needs(table)
       ->type_name("N");
-  c.add_option("--save", args->save,
-               "Pixels to an image file (.exr keeps every plane), a mesh to .ply, .obj or .glb, any buffer "
-               "to .csv or .json.")
-      ->type_name("FILE");
-  c.add_option("--sample", args->sample, "Which sample of each pixel --save writes.")
-      ->capture_default_str()
+  auto* save =
+      c.add_option(
+           "--save", args->save,
+           "Pixels to an image file (.exr keeps every plane), a mesh to .ply, .obj or .glb, any buffer "
+           "to .csv or .json.")
+          ->type_name("FILE");
+  c.add_option("--sample", args->sample,
+               "Which sample of each pixel --save writes; the first, unless it is given.")
+      ->needs(save)
       ->type_name("N");
   add_run_arguments(c, args->run);
+  c.add_option("--provenance", args->provenance,
+               "The pixel's samples, their triangles, and the node that made them.")
+      ->excludes(pixel, table, save, c.get_option("--region"))
+      ->type_name("X,Y");
 }
 
 }  // namespace frustum::cli

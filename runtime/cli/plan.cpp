@@ -9,6 +9,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <set>
+
 namespace frustum::cli {
 namespace {
 
@@ -18,6 +20,45 @@ struct Arguments {
   bool no_fuse = false;
   bool prove = false;
   int repeats = 3, threads = 0;
+};
+
+// Where a run that fills no pixel was when most bytes were live, or would have been.
+class PeakMemory : public Observer {
+ public:
+  void done(const WorkDone& work) override {
+    for (const auto& [name, n] : work.counters)
+      if (name == "live_bytes" && n > bytes_) bytes_ = n, at_ = work;
+    if (work.kind == WorkDone::Kind::pixels) counted_.insert(work.nodes.begin(), work.nodes.end());
+  }
+
+  // The passes that nothing is known of yet: they read pixels that an earlier one makes whole.
+  std::vector<std::string> not_counted(const Graph& graph, const Plan& plan) const {
+    std::vector<std::string> out;
+    for (const PixelPass& pass : plan.passes)
+      for (const std::size_t n : pass.nodes)
+        if (!counted_.contains(graph.nodes[n].id)) out.push_back(graph.nodes[n].id);
+    return out;
+  }
+
+  Json json(const Graph& graph, const Plan& plan) const {
+    return {{"peak_bytes", bytes_}, {"at", at_.nodes}, {"not_counted", not_counted(graph, plan)}};
+  }
+
+  std::string text(const Graph& graph, const Plan& plan) const {
+    if (bytes_ == 0) return {};
+    const bool pass = at_.kind == WorkDone::Kind::pixels;
+    const auto rest = not_counted(graph, plan);
+    return fmt::format(
+        "memory: about {} of buffers at most, {} {}{}\n", human_bytes(bytes_), pass ? "in the pass to" : "at",
+        at_.nodes.back(),
+        rest.empty() ? ""
+                     : fmt::format("; not counted, since pixels feed them whole: {}", fmt::join(rest, ", ")));
+  }
+
+ private:
+  std::uint64_t bytes_ = 0;
+  WorkDone at_;
+  std::set<std::string, std::less<>> counted_;
 };
 
 std::vector<std::string> ids(const Graph& graph, const std::vector<std::size_t>& nodes) {
@@ -106,14 +147,17 @@ std::string plan_text(const Graph& graph, const Plan& plan) {
 
 int show(Session& session, const Arguments& args, const Graph& graph, const Demand& demand, bool json) {
   const Plan made = make_plan(graph, demand, {.fuse = !args.no_fuse});
+  PeakMemory memory;
   const EffectPlan effects = plan_effects(
-      session, graph, demand, {.threads = args.threads, .fuse = !args.no_fuse, .cancel = &cancel_flag()});
+      session, graph, demand,
+      {.threads = args.threads, .fuse = !args.no_fuse, .cancel = &cancel_flag(), .observer = &memory});
   if (json) {
     Json out = plan_json(graph, made);
+    out["memory"] = memory.json(graph, made);
     out["effects"] = to_json(effects.effects);
     print(with_diagnostics(std::move(out), effects.facts.problems));
   } else {
-    print(plan_text(graph, made) + effects_text(effects));
+    print(plan_text(graph, made) + memory.text(graph, made) + effects_text(effects));
     report(effects.facts.problems);
   }
   return exit_code(effects.facts);

@@ -113,6 +113,8 @@ void run_once(Session& session, const Graph& graph, const RunOptions& options, b
   if (r.cache_differs) o.cache_differs = true;
   if (!keep) o.caching = bypassed(graph);
   if (!o.culprit) o.culprit = r.culprit;
+  check_region(graph, options, r, r.problems);
+  if (o.code == done && r.problems.has_errors()) o.code = bad_input;
   add_new(r.problems, o);
 }
 

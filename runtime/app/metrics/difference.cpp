@@ -2,6 +2,7 @@
 
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/numbers.h"
+#include "runtime/core/diagnostic.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <unordered_map>
 
 namespace frustum {
 namespace {
@@ -171,9 +173,18 @@ std::string unmatched(const std::vector<std::string>& a, const std::vector<std::
       if (std::find(in.begin(), in.end(), n) == in.end()) out.push_back(n);
     return out;
   };
+  // A name of the other side that is near is probably the same one, written wrong.
+  const auto told = [&](std::string_view side, const std::vector<std::string>& only,
+                        const std::vector<std::string>& other) {
+    std::string out = fmt::format("only the {} has the {} {}", side, what, fmt::join(only, ", "));
+    for (const std::string& n : only)
+      if (const auto near = nearest_names(n, other); !near.empty())
+        return fmt::format("{}; the other has '{}', near to '{}'", out, near.front(), n);
+    return out;
+  };
   const auto only_a = missing(a, b), only_b = missing(b, a);
-  if (!only_a.empty()) return fmt::format("only the first has the {} {}", what, fmt::join(only_a, ", "));
-  if (!only_b.empty()) return fmt::format("only the second has the {} {}", what, fmt::join(only_b, ", "));
+  if (!only_a.empty()) return told("first", only_a, only_b);
+  if (!only_b.empty()) return told("second", only_b, only_a);
   return {};
 }
 
@@ -248,6 +259,20 @@ std::optional<double> number_of(const Json& cell) {
   return std::nullopt;
 }
 
+// Where each column of `a` stands in `b`, which has the same names: the first of a name with the first, the second with
+// the second.
+std::vector<std::size_t> places_of(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  std::unordered_map<std::string_view, std::vector<std::size_t>> left;
+  for (std::size_t i = b.size(); i-- > 0;) left[b[i]].push_back(i);
+  std::vector<std::size_t> out;
+  for (const std::string& name : a) {
+    auto& places = left[name];
+    out.push_back(places.back());
+    if (places.size() > 1) places.pop_back();
+  }
+  return out;
+}
+
 std::string bin_name(std::size_t k) {
   if (k < 2) return std::to_string(k);
   if (k == 65) return "infinite";
@@ -304,23 +329,29 @@ Difference compare_tables(const Json& a, const Json& b) {
   Difference d;
   const auto& rows_a = a.at("rows");
   const auto& rows_b = b.at("rows");
-  d.mismatch = unmatched(a.at("columns").get<std::vector<std::string>>(),
-                         b.at("columns").get<std::vector<std::string>>(), "columns");
+  const auto names_a = a.at("columns").get<std::vector<std::string>>(),
+             names_b = b.at("columns").get<std::vector<std::string>>();
+  d.mismatch = unmatched(names_a, names_b, "columns");
+  if (d.mismatch.empty() && names_a.size() != names_b.size())
+    d.mismatch = fmt::format("the columns differ: {} and {}", names_a.size(), names_b.size());
   if (d.mismatch.empty() && rows_a.size() != rows_b.size())
     d.mismatch = fmt::format("the sizes differ: {} rows and {} rows", rows_a.size(), rows_b.size());
+  if (!d.mismatch.empty()) return d;
+  const std::vector<std::size_t> of_b = places_of(names_a, names_b);
   Tally tally(d);
-  for (std::size_t r = 0; d.mismatch.empty() && r < rows_a.size(); ++r)
+  for (std::size_t r = 0; r < rows_a.size(); ++r)
     for (std::size_t c = 0; c < rows_a[r].size(); ++c) {
       const auto place = [&] {
         WorstValue w;
-        w.plane = a.at("columns")[c].get<std::string>(), w.row = r;
+        w.plane = names_a[c], w.row = r;
         return w;
       };
-      const auto x = number_of(rows_a[r][c]), y = number_of(rows_b[r].at(c));
+      const Json &cell_a = rows_a[r][c], &cell_b = rows_b[r].at(of_b[c]);
+      const auto x = number_of(cell_a), y = number_of(cell_b);
       if (x && y)
         tally.see(*x, *y, place);
       else
-        tally.see(0u, rows_a[r][c] == rows_b[r].at(c) ? 0u : 1u, place);  // texts are ids
+        tally.see(0u, cell_a == cell_b ? 0u : 1u, place);  // texts are ids
     }
   tally.finish();
   return d;
