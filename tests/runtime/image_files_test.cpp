@@ -340,6 +340,32 @@ TEST(ImageFiles, ACompressionThatIsAskedForIsUsed) {
   EXPECT_NE(sizes["zip"], sizes["piz"]);
 }
 
+// A lower quality is a smaller file that is further from the picture; the usual one is high.
+TEST(ImageFiles, TheQualityOfAJpegIsTheOneAskedFor) {
+  const test::TempFolder folder;
+  const Raster picture = ramp({0, 0, 64, 64}, rgb);
+  std::map<std::string, std::size_t> size;
+  std::map<std::string, double> error;
+  for (const std::string quality : {"", "quality:95", "quality:50", "quality:5"}) {
+    SinkRequest r = request(folder.file("a.jpg"), {{"", picture}});
+    r.compression = quality;
+    write(r, {{"", picture}});
+    size[quality] = content(r.path).size();
+    const Raster read = read_image(r.path, "a.jpg").raster;
+    double sum = 0;
+    for (int p = 0; p < 3; ++p)
+      for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+          sum += std::abs(read.value(p, 0, x, y) - std::min(1.0, picture.value(p, 0, x, y)));
+    error[quality] = sum;
+  }
+  EXPECT_GT(size[""], size["quality:95"]);
+  EXPECT_GT(size["quality:95"], size["quality:50"]);
+  EXPECT_GT(size["quality:50"], size["quality:5"]);
+  EXPECT_LT(error[""], error["quality:50"]);
+  EXPECT_LT(error["quality:50"], error["quality:5"]);
+}
+
 // Files that are cut, empty, of noise, or that promise more than there is: always an error, never a picture
 // or a crash.
 TEST(ImageFiles, BrokenFilesAreErrors) {
