@@ -4,11 +4,13 @@
 #include "runtime/app/effects/prove.h"
 #include "runtime/cli/command.h"
 #include "runtime/core/text.h"
+#include "runtime/graph/memory_need.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <set>
 
 namespace frustum::cli {
@@ -23,12 +25,12 @@ struct Arguments {
 };
 
 // Where a run that fills no pixel was when most bytes were live, or would have been.
-class PeakMemory : public Observer {
+class PeakMemory : public MemoryObserver {
  public:
-  void done(const WorkDone& work) override {
-    for (const auto& [name, n] : work.counters)
-      if (name == "live_bytes" && n > bytes_) bytes_ = n, at_ = work;
-    if (work.kind == WorkDone::Kind::pixels) counted_.insert(work.nodes.begin(), work.nodes.end());
+  void needs(const MemoryNeed& need) override {
+    if (need.most > peak_.most) peak_ = need;
+    least_ = std::max(least_, need.least);
+    if (need.pass) counted_.insert(need.nodes.begin(), need.nodes.end());
   }
 
   // The passes that nothing is known of yet: they read pixels that an earlier one makes whole.
@@ -41,23 +43,25 @@ class PeakMemory : public Observer {
   }
 
   Json json(const Graph& graph, const Plan& plan) const {
-    return {{"peak_bytes", bytes_}, {"at", at_.nodes}, {"not_counted", not_counted(graph, plan)}};
+    return {
+        {"peak_bytes", {least_, peak_.most}}, {"at", peak_.nodes}, {"not_counted", not_counted(graph, plan)}};
   }
 
   std::string text(const Graph& graph, const Plan& plan) const {
-    if (bytes_ == 0) return {};
-    const bool pass = at_.kind == WorkDone::Kind::pixels;
+    if (peak_.most == 0) return {};
+    const std::string least = human_bytes(least_), most = human_bytes(peak_.most);
     const auto rest = not_counted(graph, plan);
     return fmt::format(
-        "memory: about {} of buffers at most, {} {}{}\n", human_bytes(bytes_), pass ? "in the pass to" : "at",
-        at_.nodes.back(),
+        "memory: {} of buffers at the peak, {} {}{}\n",
+        least == most ? "about " + most : fmt::format("{} to {}", least, most),
+        peak_.pass ? "in the pass to" : "at", peak_.nodes.back(),
         rest.empty() ? ""
                      : fmt::format("; not counted, since pixels feed them whole: {}", fmt::join(rest, ", ")));
   }
 
  private:
-  std::uint64_t bytes_ = 0;
-  WorkDone at_;
+  std::uint64_t least_ = 0;
+  MemoryNeed peak_;
   std::set<std::string, std::less<>> counted_;
 };
 

@@ -98,7 +98,8 @@ class Runner {
 
   void end_uses(const Step& s) {
     for_each_use(s, [&](PortRef p) { state_.end_use(p); });
-    if (s.kind == Step::Kind::pass)
+    // Where no pixel is filled, nodes that read the pass are prepared from the frames of its nodes still.
+    if (s.kind == Step::Kind::pass && !state_.options.only_facts)
       for (const std::size_t n : state_.plan.passes[s.index].nodes) state_.end_ready_use(n);
   }
 
@@ -330,8 +331,10 @@ class Runner {
     state_.decided(n, ctx.verdicts());
     const auto time = state_.now() - start;
     state_.caches.ran(n, time);
-    auto counters = ctx.counters();
-    if (state_.options.only_facts) counters.emplace_back("live_bytes", state_.ledger.live());
+    if (state_.options.only_facts) {
+      const std::uint64_t live = state_.ledger.live();
+      state_.tell({.nodes = {node.id}, .least = live, .most = live});
+    }
     state_.observe([&](Observer& o) {
       o.done({kind,
               {node.id},
@@ -340,7 +343,7 @@ class Runner {
               bytes,
               state_.caches.any() ? verdict : CacheVerdict::off,
               std::max(0, tbb::this_task_arena::current_thread_index()),
-              counters});
+              ctx.counters()});
     });
   }
 

@@ -257,31 +257,28 @@ class Pass {
           }
   }
 
-  // What the pass would hold at once if it ran now: what is made whole, the tiles of every thread, and the bands on their
-  // way to files. Told as the work of a pass that takes no time, with what is live besides.
+  // What the pass would hold at once if it ran now: what is made whole and the tiles of every thread, and, where files are
+  // slower than pixels, the bands on their way to them.
   void tell_need() {
     if (roots_.empty()) return;
-    std::uint64_t whole = 0, bands = 0;
+    std::uint64_t need = 0, bands = 0;
     for (std::size_t i = 0; i < roots_.size(); ++i) {
       const Frame& f = frame(roots_[i]);
       area_ = hull(area_, f.window);
-      if (i < pass_.roots.size()) whole += raster_bytes(f);
+      if (i < pass_.roots.size()) need += raster_bytes(f);
     }
     const TileProgram program(ops_, roots_);
     const int edge = state_.options.tile_edge > 0 ? state_.options.tile_edge : program.choose_edge();
     const TileProgram::Estimate estimate = program.estimate(edge);
     if (estimate.worst && estimate.area_ratio > 1.5 &&
         !small_picture(edge))  // as cut_where_margins_are_wide()
-      for (const auto& made : ops_[*estimate.worst].prepared->frames) whole += raster_bytes(*made);
+      for (const auto& made : ops_[*estimate.worst].prepared->frames) need += raster_bytes(*made);
+    need += static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency()) * estimate.live_bytes;
     for (std::size_t i = pass_.roots.size(); i < roots_.size(); ++i) bands += band_bytes(roots_[i], edge);
-    const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
-    const std::uint64_t need = whole + bands + threads * estimate.live_bytes;
-    state_.ledger.add_bytes(need);
-    WorkDone told{.kind = WorkDone::Kind::pixels, .nodes = {}, .bytes = need, .counters = {}};
+    const std::uint64_t live = state_.ledger.live() + need;
+    MemoryNeed told{.nodes = {}, .pass = true, .least = live, .most = live + bands};
     for (const std::size_t n : pass_.nodes) told.nodes.push_back(graph_.nodes[n].id);
-    told.counters.emplace_back("live_bytes", state_.ledger.live());
-    state_.ledger.remove_bytes(need);
-    state_.observe([&](Observer& o) { o.done(told); });
+    state_.tell(told);
   }
 
   // Rows of tiles wait for those before them: four are on their way at most.

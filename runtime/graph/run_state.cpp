@@ -116,6 +116,12 @@ bool RunState::has_failed(std::size_t output) {
   return failed_outputs_.contains(output);
 }
 
+void RunState::tell(const MemoryNeed& need) {
+  observe([&](Observer& o) {
+    if (auto* listener = dynamic_cast<MemoryObserver*>(&o)) listener->needs(need);
+  });
+}
+
 void RunState::decided(std::size_t node, const std::vector<std::pair<std::string, Verdict>>& verdicts) {
   const std::lock_guard lock(mutex_);
   for (const auto& [effect, verdict] : verdicts)

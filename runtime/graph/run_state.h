@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/graph/ledger.h"
+#include "runtime/graph/memory_need.h"
 #include "runtime/graph/run.h"
 #include "runtime/graph/run_cache.h"
 
@@ -71,6 +72,7 @@ class RunState {
     const std::lock_guard lock(observer_mutex_);
     f(*options.observer);
   }
+  void tell(const MemoryNeed& need);  // an observer that asks for it
   std::chrono::nanoseconds now() const { return std::chrono::steady_clock::now() - start_; }
 
   void take_results(RunResult& result);
