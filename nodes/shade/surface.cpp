@@ -4,16 +4,16 @@
 #include "nodes/shade.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/light.h"
+#include "runtime/buffers/lit_faces.h"
 #include "runtime/buffers/lit_scene.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/real_rows.h"
+#include "runtime/buffers/screen_view.h"
 #include "runtime/buffers/shading_scene.h"
 #include "runtime/buffers/transparency.h"
 #include "runtime/core/node_type.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 namespace frustum {
@@ -56,9 +56,7 @@ constexpr std::string_view highlights_name = "highlights", ambient_name = "ambie
 template <class R>
 struct Shader {
   Scene<R> scene;
-  std::vector<Received<R>> received;  // flat: by face; Gouraud: by vertex or corner
-  bool by_corner = false;
-  Ref<Column> screen;  // Gouraud: (x_px, y_px, z, 1/w) by vertex
+  LitFaces<R> lit;  // flat and Gouraud
 };
 
 struct State {
@@ -86,73 +84,17 @@ ShadingEffects effects_asked(const Inputs& in, const Params& p, const Context& c
           .all_sides = ctx.forces(sides_name)};
 }
 
-template <class Body>
-void for_faces(const Mesh& mesh, const Context& ctx, Body&& body) {
-  const auto triangles = mesh.triangles();
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 4096), [&](const auto& range) {
-    ctx.poll();
-    for (std::size_t f = range.begin(); f < range.end(); ++f) body(f, triangles[f]);
-  });
-}
-
-// Lights the vertices, or each corner where a vertex does not look the same from all of its faces.
-template <class R>
-void light_vertices(Shader<R>& shader, const Mesh& mesh, const Context& ctx) {
-  using V3 = glm::vec<3, R>;
-  const Ref<Column> world = world_positions<R>(mesh), normals = mesh.real<R>("normal");
-  if (normals->width() != 3)
-    throw NodeError("wrong_column", "normals have three components", at_input("mesh"));
-  const auto position = world->values<V3>(), normal = normals->values<V3>();
-  const Scene<R>& s = shader.scene;
-  const bool corner_normals = normals->domain() == Domain::corner;
-  shader.by_corner = corner_normals || !s.surface_of.empty() || !s.side.empty();
-  shader.received.resize(shader.by_corner ? 3 * mesh.faces() : mesh.vertices());
-  if (!shader.by_corner) {
-    tbb::parallel_for(std::size_t{0}, mesh.vertices(), [&](std::size_t i) {
-      shader.received[i] = kernels::receive(s.setup(s.surfaces[0]), triple(normal[i]), triple(position[i]));
-    });
-    return;
-  }
-  for_faces(mesh, ctx, [&](std::size_t f, const glm::uvec3& t) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t v = t[static_cast<glm::length_t>(c)];
-      const V3 n = normal[corner_normals ? 3 * f + c : v] * s.side_of(f);
-      shader.received[3 * f + c] = kernels::receive(s.setup(s.surface(f)), triple(n), triple(position[v]));
-    }
-  });
-}
-
 template <class R>
 Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
-  using V3 = glm::vec<3, R>;
   const ShadingEffects asked = effects_asked(in, p, ctx);
-  Shader<R> shader{make_shading_scene<R>(lit_scene(in), camera_of(in), p.two_sided, asked), {}, false, {}};
+  Shader<R> shader{make_shading_scene<R>(lit_scene(in), camera_of(in), p.two_sided, asked), {}};
   Scene<R>& s = shader.scene;
-  const Mesh& mesh = *in.mesh;
-  s.opacity = opacities_of<R>(mesh);
-  if (asked.all_sides) s.side.assign(mesh.faces(), R(1));
-  if (std::any_of(s.surfaces.begin(), s.surfaces.end(), [](const auto& of) { return of.two_sided; })) {
-    const Ref<Column> world = world_positions<R>(mesh);
-    const auto q = world->values<V3>();
-    s.side.resize(mesh.faces());
-    for_faces(mesh, ctx, [&](std::size_t f, const glm::uvec3& t) {
-      s.side[f] = s.surface(f).two_sided ? seen_side(q[t[0]], q[t[1]], q[t[2]], s.eye) : R(1);
-    });
-  }
-  if (p.interpolation == Interpolation::flat) {
-    const Ref<Column> world = world_positions<R>(mesh);
-    const auto q = world->values<V3>();
-    shader.received.resize(mesh.faces());
-    for_faces(mesh, ctx, [&](std::size_t f, const glm::uvec3& t) {
-      shader.received[f] = light_face(s, f, q[t[0]], q[t[1]], q[t[2]]);
-    });
-  }
-  if (p.interpolation == Interpolation::gouraud) {
-    light_vertices(shader, mesh, ctx);
-    if (mesh.space() != Space::screen)
-      throw NodeError("wrong_space", "Gouraud shading needs the mesh in screen space", at_input("mesh"));
-    shader.screen = mesh.real<R>("position");
-  }
+  s.opacity = opacities_of<R>(*in.mesh);
+  if (asked.all_sides) s.side.assign(in.mesh->faces(), R(1));
+  if (std::any_of(s.surfaces.begin(), s.surfaces.end(), [](const auto& of) { return of.two_sided; }))
+    s.side = sides_of_faces(s, *in.mesh, ctx);
+  if (p.interpolation == Interpolation::flat) shader.lit = light_faces(s, *in.mesh, ctx);
+  if (p.interpolation == Interpolation::gouraud) shader.lit = light_vertices(s, *in.mesh, ctx);
   return shader;
 }
 
@@ -192,7 +134,7 @@ Verdict two_sided_lighting(const Inputs& in, const Params& p, const Context& ctx
     const Triple<R> eye = eye_of<R>(*camera);
     const std::size_t face = kernels::first_where(triangles.size(), [&](std::size_t f) {
       const glm::uvec3& t = triangles[f];
-      return seen_side(q[t[0]], q[t[1]], q[t[2]], eye) < R(0);
+      return kernels::seen_side(q[t[0]], q[t[1]], q[t[2]], eye) < R(0);
     });
     if (face == triangles.size()) return off_exact("no face turns its back to the camera", points);
     return on(fmt::format("face {} turns its back to the camera", face), points);
@@ -269,58 +211,6 @@ PointRow<R> point_row(const State& s, const std::uint32_t* id, const auto& numbe
   return row;
 }
 
-// Light of flat and Gouraud faces at the samples of a row.
-template <class R>
-void interpolate_row(const State& s, const Shader<R>& shader, const Frame& frame, const std::uint32_t* id,
-                     int sample, int x0, int y, std::size_t n, const std::array<R*, 6>& out) {
-  const auto put = [&](std::size_t x, const Received<R>& r) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      out[k][x] = r.diffuse[k];
-      if (out[3 + k] != nullptr) out[3 + k][x] = r.specular[k];
-    }
-  };
-  const std::size_t faces = s.mesh->faces();
-  const auto triangles = s.mesh->triangles();
-  std::optional<CornerShares<R>> shares;
-  std::array<const Received<R>*, 3> corner{};
-  std::uint32_t current = no_face;
-  for (std::size_t x = 0; x < n; ++x) {
-    const std::uint32_t f = id[x];
-    if (f >= faces) {
-      put(x, {});
-      continue;
-    }
-    if (s.interpolation == Interpolation::flat) {
-      put(x, shader.received[f]);
-      continue;
-    }
-    if (f != current) {
-      current = f;
-      const glm::uvec3& t = triangles[f];
-      const auto screen = shader.screen->template values<glm::vec<4, R>>();
-      shares.emplace(screen[t[0]], screen[t[1]], screen[t[2]]);
-      for (std::size_t c = 0; c < 3; ++c)
-        corner[c] = &shader.received[shader.by_corner ? 3 * f + c : t[static_cast<glm::length_t>(c)]];
-    }
-    const int px = x0 + static_cast<int>(x);
-    R sx = R(0.5), sy = R(0.5);
-    if (frame.pattern) {
-      const std::size_t at = frame.pattern->index(sample, px, y);
-      sx = static_cast<R>(frame.pattern->x[at]) * R(0x1p-12),
-      sy = static_cast<R>(frame.pattern->y[at]) * R(0x1p-12);
-    }
-    const Triple<R> w = shares->at(static_cast<R>(px) + sx, static_cast<R>(y) + sy);
-    Received<R> r;
-    for (std::size_t k = 0; k < 3; ++k) {
-      r.diffuse[k] =
-          w[0] * corner[0]->diffuse[k] + w[1] * corner[1]->diffuse[k] + w[2] * corner[2]->diffuse[k];
-      r.specular[k] =
-          w[0] * corner[0]->specular[k] + w[1] * corner[1]->specular[k] + w[2] * corner[2]->specular[k];
-    }
-    put(x, r);
-  }
-}
-
 template <class R>
 class Filler {
  public:
@@ -331,6 +221,8 @@ class Filler {
         albedo_(albedo),
         out_(out),
         arena_(arena),
+        faces_(shader_.lit.view(*s.mesh)),
+        positions_(sample_positions(points.frame().pattern.get())),
         n_(static_cast<std::size_t>(out.rect().width())),
         samples_(static_cast<std::size_t>(out.samples())) {
     const bool highlights = shader_.scene.highlights;
@@ -389,8 +281,8 @@ class Filler {
       for (std::size_t k = 0; k < samples_; ++k) {
         std::array<R*, 6> out{};
         for (std::size_t i = 0; i < lit_numbers_; ++i) row_[i * samples_ + k] = out[i] = copy(i, k).data();
-        interpolate_row(s_, shader_, points_.frame(), id_[k], static_cast<int>(k), points_.rect().x0, y, n_,
-                        out);
+        kernels::face_light_row(faces_, positions_, id_[k], static_cast<int>(k), points_.rect().x0, y, n_,
+                                out);
       }
       number = lit_numbers_;
     }
@@ -433,6 +325,8 @@ class Filler {
   const Shader<R>& shader_;
   const Tile &points_, &albedo_, &out_;
   Arena& arena_;
+  kernels::FaceLight<R> faces_;
+  kernels::SamplePositions positions_;
   std::size_t n_, samples_;
   std::size_t lit_numbers_, numbers_;
   std::vector<const R*> row_;

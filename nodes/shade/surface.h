@@ -1,14 +1,10 @@
-// Shading of visible points: what is lit once per face or corner, how that reaches a sample, and how a row of
-// samples gets its colours. The arithmetic of light itself is nodes/kernels/lighting.h.
+// Shading of visible points: how a row of samples gets its colours. The arithmetic of light itself is
+// nodes/kernels/lighting.h; what is lit once per face or corner, nodes/kernels/face_light.h.
 #pragma once
 
+#include "nodes/kernels/face_light.h"
 #include "nodes/kernels/shading_scene.h"
 #include "nodes/kernels/simd/lighting.h"
-#include "nodes/kernels/vector.h"
-
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 
 #include <array>
 #include <concepts>
@@ -26,64 +22,6 @@ template <std::floating_point R>
 using Surface = kernels::ShadedSurface<R>;
 template <std::floating_point R>
 using Scene = kernels::ShadingScene<R>;
-
-template <std::floating_point R>
-Triple<R> triple(const glm::vec<3, R>& v) {
-  return {v.x, v.y, v.z};
-}
-
-/// The normal of a triangle that is counter-clockwise seen from where it points; zero for a triangle without
-/// area.
-template <std::floating_point R>
-glm::vec<3, R> face_normal(const glm::vec<3, R>& a, const glm::vec<3, R>& b, const glm::vec<3, R>& c) {
-  return kernels::normalized_or(kernels::cross(b - a, c - a), glm::vec<3, R>(0));
-}
-
-/// -1 where `eye` lies behind the triangle's plane, +1 in front of it and on it.
-template <std::floating_point R>
-R seen_side(const glm::vec<3, R>& a, const glm::vec<3, R>& b, const glm::vec<3, R>& c, const Triple<R>& eye) {
-  const glm::vec<3, R> to_eye = glm::vec<3, R>(eye[0], eye[1], eye[2]) - a;
-  return kernels::dot(kernels::cross(b - a, c - a), to_eye) < R(0) ? R(-1) : R(1);
-}
-
-/// Flat shading: one value for the whole face, at its centroid with its own normal.
-template <std::floating_point R>
-Received<R> light_face(const Scene<R>& s, std::size_t face, const glm::vec<3, R>& a, const glm::vec<3, R>& b,
-                       const glm::vec<3, R>& c) {
-  const glm::vec<3, R> normal = face_normal(a, b, c) * s.side_of(face), centre = (a + b + c) / R(3);
-  return kernels::receive(s.setup(s.surface(face)), triple(normal), triple(centre));
-}
-
-/// Shares of a triangle's corners at points of the screen, correct in perspective: a_k = b_k / w_k / sum(b_j
-/// / w_j) with b linear on the screen (errata E21). Never negative, sum 1 within rounding; a triangle without
-/// area gives its first corner.
-template <std::floating_point R>
-class CornerShares {
- public:
-  /// Corners as (x_px, y_px, z, 1/w).
-  CornerShares(const glm::vec<4, R>& a, const glm::vec<4, R>& b, const glm::vec<4, R>& c)
-      : origin_(a), ab_(b.x - a.x, b.y - a.y), ac_(c.x - a.x, c.y - a.y), inverse_w_{a.w, b.w, c.w} {
-    const R area = kernels::difference_of_products(ab_.x, ac_.y, ac_.x, ab_.y);
-    inverse_area_ = area != R(0) ? R(1) / area : R(0);
-  }
-  Triple<R> at(R x, R y) const {
-    const R px = x - origin_.x, py = y - origin_.y;
-    const auto positive = [](R t) { return t > R(0) ? t : R(0); };
-    const R b = positive((px * ac_.y - ac_.x * py) * inverse_area_),
-            c = positive((ab_.x * py - px * ab_.y) * inverse_area_);
-    Triple<R> share{positive(R(1) - b - c) * inverse_w_[0], b * inverse_w_[1], c * inverse_w_[2]};
-    const R sum = share[0] + share[1] + share[2];
-    if (!(sum > R(0))) return {1, 0, 0};
-    for (R& t : share) t = t / sum;
-    return share;
-  }
-
- private:
-  glm::vec<4, R> origin_;
-  glm::vec<2, R> ab_, ac_;
-  Triple<R> inverse_w_;
-  R inverse_area_;
-};
 
 // ----- rows
 
