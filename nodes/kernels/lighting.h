@@ -31,7 +31,9 @@ struct LightSource {
   Triple<R> place{};        ///< unit vector towards a directional light, or the position of a point light
   Triple<R> attenuation{};  ///< of a point light: colour / (x + y d + z d^2)
   bool is_spot = false;     ///< a point light that shines into a cone
-  Triple<R> axis{};         ///< of the cone: unit vector along which it shines
+  bool is_patch =
+      false;         ///< a point light that is a piece of a flat lamp: as strong as the cosine from its axis
+  Triple<R> axis{};  ///< of the cone or the piece: unit vector along which it shines
   R cone_scale = 0,
     cone_offset = 1;      ///< strength times t^2, t = cosine from the axis * scale + offset in [0, 1]
   bool falls_off = true;  ///< false: attenuation is (1, 0, 0), which divides by 1 at every distance
@@ -92,10 +94,16 @@ struct Selection {
 
 /// Rows of points. Normals need no unit length; `sign` (null: +1) turns them. Positions may be null where no
 /// light and no highlight depends on them.
+///   reach  by light a row of the share of it that reaches each point, null where all of it does; empty: all of all
 template <std::floating_point R>
 struct PointRows {
   std::array<const R*, 3> normal{}, position{};
   const R* sign = nullptr;
+  std::span<const R* const> reach = {};
+  std::size_t first = 0;  ///< of the points, in the rows of `reach`
+  const R* reach_of(std::size_t light) const {
+    return reach.empty() || reach[light] == nullptr ? nullptr : reach[light] + first;
+  }
 };
 
 /// Rows of light received: before the surface's colours. `specular` may be null where no surface has a highlight.
@@ -147,29 +155,36 @@ R highlight_cosine(Highlight kind, const Triple<R>& n, const Triple<R>& l, const
   return x < R(1) ? x : R(1);
 }
 
-template <std::floating_point R>
-Received<R> receive(const LightSetup<R>& s, const Triple<R>& normal, const Triple<R>& p) {
+///   share  by light, share(i) in [0, 1]: how much of the i-th reaches the point
+template <std::floating_point R, class Share>
+Received<R> receive(const LightSetup<R>& s, const Triple<R>& normal, const Triple<R>& p, const Share& share) {
   Received<R> sum;
   const Triple<R> n = unit3(normal);
   Triple<R> v{};
   if (s.highlight != Highlight::none) v = unit3<R>({s.eye[0] - p[0], s.eye[1] - p[1], s.eye[2] - p[2]});
-  for (const LightSource<R>& light : s.lights) {
+  for (std::size_t i = 0; i < s.lights.size(); ++i) {
+    const LightSource<R>& light = s.lights[i];
     Triple<R> l = light.place;
-    R strength = 1;
+    R strength = share(i);
     if (light.is_point) {
       const Triple<R> d{l[0] - p[0], l[1] - p[1], l[2] - p[2]};
       const R square = dot3(d, d), distance = std::sqrt(square);
       l = unit3(d);
       if (light.falls_off) {
-        strength =
+        R weaker =
             R(1) / (light.attenuation[0] + light.attenuation[1] * distance + light.attenuation[2] * square);
-        strength = strength < R(greatest_strength) ? strength : R(greatest_strength);
+        weaker = weaker < R(greatest_strength) ? weaker : R(greatest_strength);
+        strength = strength * weaker;
       }
       if (light.is_spot) {
         R t = light.cone_offset - dot3(l, light.axis) * light.cone_scale;
         t = t > R(0) ? t : R(0);
         t = t < R(1) ? t : R(1);
         strength = strength * (t * t);
+      }
+      if (light.is_patch) {
+        const R cosine = -dot3(l, light.axis);
+        strength = strength * (cosine > R(0) ? cosine : R(0));
       }
     }
     const R n_l = dot3(n, l);
@@ -183,6 +198,11 @@ Received<R> receive(const LightSetup<R>& s, const Triple<R>& normal, const Tripl
   return sum;
 }
 
+template <std::floating_point R>
+Received<R> receive(const LightSetup<R>& s, const Triple<R>& normal, const Triple<R>& p) {
+  return receive(s, normal, p, [](std::size_t) { return R(1); });
+}
+
 /// Light received by the selected points of a row; other elements of `out` are left unspecified.
 template <std::floating_point R>
 void receive_light(const LightSetup<R>& s, const PointRows<R>& in, Selection which, std::size_t n,
@@ -193,7 +213,10 @@ void receive_light(const LightSetup<R>& s, const PointRows<R>& in, Selection whi
     const Triple<R> normal{in.normal[0][x] * sign, in.normal[1][x] * sign, in.normal[2][x] * sign};
     Triple<R> p{};
     if (in.position[0] != nullptr) p = {in.position[0][x], in.position[1][x], in.position[2][x]};
-    const Received<R> r = receive(s, normal, p);
+    const Received<R> r = receive(s, normal, p, [&](std::size_t i) {
+      const R* row = in.reach_of(i);
+      return row == nullptr ? R(1) : row[x];
+    });
     for (std::size_t k = 0; k < 3; ++k) {
       out.diffuse[k][x] = r.diffuse[k];
       if (out.specular[k] != nullptr) out.specular[k][x] = r.specular[k];

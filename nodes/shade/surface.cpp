@@ -11,6 +11,7 @@
 #include "runtime/buffers/screen_view.h"
 #include "runtime/buffers/shading_scene.h"
 #include "runtime/buffers/transparency.h"
+#include "runtime/buffers/visible_lights.h"
 #include "runtime/core/node_type.h"
 
 #include <fmt/format.h>
@@ -34,7 +35,7 @@ constexpr auto choices(Rate) {
 struct Inputs {
   Tiled<Image> points;
   Ref<Mesh> mesh;
-  std::optional<Tiled<Image>> albedo;
+  std::optional<Tiled<Image>> albedo, visibility;
   std::optional<Ref<Material>> material;
   std::vector<Ref<LightSet>> lights;
   std::optional<Ref<Camera>> camera;
@@ -50,13 +51,14 @@ struct Outputs {
 
 // ----- preparation
 constexpr std::string_view highlights_name = "highlights", ambient_name = "ambient_light",
-                           attenuation_name = "attenuation", sides_name = "two_sided_lighting";
+                           attenuation_name = "attenuation", sides_name = "two_sided_lighting",
+                           shadows_name = "shadows";
 
 // What a pixel needs in the precision of the node.
 template <class R>
 struct Shader {
   Scene<R> scene;
-  LitFaces<R> lit;  // flat and Gouraud
+  std::vector<LitFaces<R>> lit;  // flat and Gouraud: all light, or by source where some may be hidden
 };
 
 struct State {
@@ -66,6 +68,7 @@ struct State {
   Ref<Mesh> mesh;
   int id = -1;
   std::array<RealPlane, 3> normal{}, position{}, albedo{};
+  std::vector<RealPlane> reach{};  // by source; empty: no light is hidden from anything
 };
 
 LitScene lit_scene(const Inputs& in) {
@@ -84,6 +87,10 @@ ShadingEffects effects_asked(const Inputs& in, const Params& p, const Context& c
           .all_sides = ctx.forces(sides_name)};
 }
 
+bool some_hidden(const Inputs& in, const Context& ctx) {
+  return in.visibility && !in.visibility->frame().planes.empty() && ctx.simulates(shadows_name);
+}
+
 template <class R>
 Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
   const ShadingEffects asked = effects_asked(in, p, ctx);
@@ -93,8 +100,20 @@ Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
   if (asked.all_sides) s.side.assign(in.mesh->faces(), R(1));
   if (std::any_of(s.surfaces.begin(), s.surfaces.end(), [](const auto& of) { return of.two_sided; }))
     s.side = sides_of_faces(s, *in.mesh, ctx);
-  if (p.interpolation == Interpolation::flat) shader.lit = light_faces(s, *in.mesh, ctx);
-  if (p.interpolation == Interpolation::gouraud) shader.lit = light_vertices(s, *in.mesh, ctx);
+  if (p.interpolation == Interpolation::phong) return shader;
+  const auto light = [&](const Scene<R>& by) {
+    return p.interpolation == Interpolation::flat ? light_faces(by, *in.mesh, ctx)
+                                                  : light_vertices(by, *in.mesh, ctx);
+  };
+  if (!some_hidden(in, ctx)) {
+    shader.lit.push_back(light(s));
+    return shader;
+  }
+  Scene<R> one = s;
+  for (const auto& source : s.lights) {
+    one.lights = {source};
+    shader.lit.push_back(light(one));
+  }
   return shader;
 }
 
@@ -141,7 +160,13 @@ Verdict two_sided_lighting(const Inputs& in, const Params& p, const Context& ctx
   });
 }
 
-Verdict shadows(const Inputs& in, const Params&, const Context&) {
+Verdict shadows(const Inputs& in, const Params& p, const Context&) {
+  if (in.visibility) {
+    const std::uint64_t points = points_of(in, p);
+    const PlaneList& planes = in.visibility->frame().planes;
+    if (planes.empty()) return off_exact("'visibility' hides no light from anything", points);
+    return on(fmt::format("'visibility' may hide {} sources of light", planes.size()), points);
+  }
   const Mesh& mesh = *in.mesh;
   const bool own = mesh.find("world") == nullptr && mesh.space() == Space::world;
   const Column* column = mesh.find(own ? "position" : "world");
@@ -149,6 +174,35 @@ Verdict shadows(const Inputs& in, const Params&, const Context&) {
     return needs_shadows(lit_scene(in), {});
   const Ref<Column> world = mesh.real<double>(column->name());
   return needs_shadows(lit_scene(in), world->values<glm::dvec3>());
+}
+
+// A raster that goes with the points, pixel by pixel.
+void require_same_shape(const Frame& points, const Frame& other, std::string_view input) {
+  if (other.window != points.window || other.samples() != points.samples())
+    throw NodeError("different_frames", fmt::format("{} and points have different windows or samples", input),
+                    at_input(input));
+}
+
+std::vector<RealPlane> read_reach(const Inputs& in, std::size_t sources, const Context& ctx) {
+  const Frame& f = in.visibility->frame();
+  require_same_shape(in.points.frame(), f, "visibility");
+  std::vector<RealPlane> reach(sources);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < sources; ++i) {
+    if (!f.find(visibility_plane(i))) continue;
+    reach[i] = read_real(*in.visibility, visibility_plane(i), ctx.precision), ++found;
+  }
+  if (found != f.planes.size())
+    throw NodeError(
+        "other_lights",
+        fmt::format("'visibility' has {} planes, of which {} are of one of the {} sources of light",
+                    f.planes.size(), found, sources),
+        at_input("visibility"));
+  return reach;
+}
+
+std::size_t sources_of(const State& s) {
+  return std::visit([](const auto& shader) { return shader.scene.lights.size(); }, s.shader);
 }
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
@@ -169,13 +223,11 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
                     read_real(in.points, "P.z", ctx.precision)};
   }
   if (in.albedo && !in.albedo->frame().white.holds) {
-    const Frame& a = in.albedo->frame();
-    if (a.window != from.window || a.samples() != from.samples())
-      throw NodeError("different_frames", "albedo and points have different windows or samples",
-                      at_input("albedo"));
+    require_same_shape(from, in.albedo->frame(), "albedo");
     s.albedo = {read_real(*in.albedo, "R", ctx.precision), read_real(*in.albedo, "G", ctx.precision),
                 read_real(*in.albedo, "B", ctx.precision)};
   }
+  if (some_hidden(in, ctx)) s.reach = read_reach(in, sources_of(s), ctx);
   const PlaneKind kind = real_kind(ctx.precision);
   Frame color{.window = from.window,
               .pattern = from.pattern,
@@ -191,9 +243,11 @@ bool has_highlights(const State& s) {
 }
 
 // Numbers come in threes: what is lit (normal and, where needed, position; or diffuse and, where a surface has a
-// highlight, specular light), then albedo.
+// highlight, specular light), then albedo; at last, for points that are lit here, one for each light that may be hidden.
+//   reach  by source; keeps what the row points to
 template <class R>
-PointRow<R> point_row(const State& s, const std::uint32_t* id, const auto& number) {
+PointRow<R> point_row(const State& s, const std::uint32_t* id, const auto& number,
+                      std::vector<const R*>& reach) {
   std::size_t at = 0;
   const auto three = [&] {
     at += 3;
@@ -208,20 +262,26 @@ PointRow<R> point_row(const State& s, const std::uint32_t* id, const auto& numbe
     if (has_highlights(s)) row.received.specular = three();
   }
   if (s.albedo[0]) row.albedo = three();
+  if (s.interpolation != Interpolation::phong) return row;
+  reach.assign(s.reach.size(), nullptr);
+  for (std::size_t i = 0; i < reach.size(); ++i)
+    if (s.reach[i]) reach[i] = number(at++);
+  row.reach = reach;
   return row;
 }
 
 template <class R>
 class Filler {
  public:
-  Filler(const State& s, const Tile& points, const Tile& albedo, const Tile& out, Arena& arena)
+  Filler(const State& s, const Tile& points, const Tile& albedo, const Tile& visibility, const Tile& out,
+         Arena& arena)
       : s_(s),
         shader_(std::get<Shader<R>>(s.shader)),
         points_(points),
         albedo_(albedo),
+        visibility_(visibility),
         out_(out),
         arena_(arena),
-        faces_(shader_.lit.view(*s.mesh)),
         positions_(sample_positions(points.frame().pattern.get())),
         n_(static_cast<std::size_t>(out.rect().width())),
         samples_(static_cast<std::size_t>(out.samples())) {
@@ -236,6 +296,11 @@ class Filler {
     const bool phong = s.interpolation == Interpolation::phong;
     lit_numbers_ = (phong ? static_cast<bool>(s.position[0]) : highlights) ? 6 : 3;
     numbers_ = lit_numbers_ + (s.albedo[0] ? 3u : 0u);
+    for (const LitFaces<R>& lit : shader_.lit) faces_.push_back(lit.view(*s.mesh));
+    if (phong)
+      for (const RealPlane& plane : s.reach) numbers_ += plane ? 1 : 0;
+    else if (!s.reach.empty())
+      for (auto& part : part_) part = row();
     if (sizeof(R) == 8 || !phong) copies_ = arena.take<R>(numbers_ * samples_ * n_);
     row_.resize(numbers_ * samples_);
     id_.resize(samples_);
@@ -267,8 +332,9 @@ class Filler {
     for (std::size_t k = 0; k < samples_; ++k)
       id_[k] = points_.row<const std::uint32_t>(s_.id, static_cast<int>(k), y);
     std::size_t number = 0;
-    const auto add = [&](const Tile& tile, const std::array<RealPlane, 3>& planes) {
+    const auto add = [&](const Tile& tile, std::span<const RealPlane> planes) {
       for (const RealPlane plane : planes) {
+        if (!plane) continue;
         for (std::size_t k = 0; k < samples_; ++k)
           row_[number * samples_ + k] = real_row<R>(tile, plane, static_cast<int>(k), y, copy(number, k));
         ++number;
@@ -281,12 +347,32 @@ class Filler {
       for (std::size_t k = 0; k < samples_; ++k) {
         std::array<R*, 6> out{};
         for (std::size_t i = 0; i < lit_numbers_; ++i) row_[i * samples_ + k] = out[i] = copy(i, k).data();
-        kernels::face_light_row(faces_, positions_, id_[k], static_cast<int>(k), points_.rect().x0, y, n_,
-                                out);
+        find_face_light(static_cast<int>(k), y, out);
       }
       number = lit_numbers_;
     }
     if (s_.albedo[0]) add(albedo_, s_.albedo);
+    if (s_.interpolation == Interpolation::phong) add(visibility_, s_.reach);
+  }
+
+  // Flat and Gouraud: what the faces received; of each light that may be hidden, as much as reaches the point.
+  void find_face_light(int k, int y, const std::array<R*, 6>& out) {
+    const auto find = [&](const kernels::FaceLight<R>& light, const std::array<R*, 6>& to) {
+      kernels::face_light_row(light, positions_, id_[static_cast<std::size_t>(k)], k, points_.rect().x0, y,
+                              n_, to);
+    };
+    if (s_.reach.empty()) return find(faces_[0], out);
+    for (R* to : out)
+      if (to != nullptr) std::fill_n(to, n_, R(0));
+    std::array<R*, 6> part{};
+    std::copy_n(part_.begin(), lit_numbers_, part.begin());
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      find(faces_[i], part);
+      const R* reach = real_row<R>(visibility_, s_.reach[i], k, y, std::span(part_[6], n_));
+      for (std::size_t c = 0; c < lit_numbers_; ++c)
+        for (std::size_t x = 0; x < n_; ++x)
+          out[c][x] = out[c][x] + (reach == nullptr ? part[c][x] : part[c][x] * reach[x]);
+    }
   }
 
   kernels::ColorRows<R> out_rows(std::size_t sample, int y) const {
@@ -300,7 +386,7 @@ class Filler {
     for (std::size_t k = 0; k < samples_; ++k) {
       const auto number = [&](std::size_t i) { return row_[i * samples_ + k]; };
       const kernels::ColorRows<R> out = out_rows(k, y);
-      shade_row(shader_.scene, point_row<R>(s_, id_[k], number), n_, scratch_, out);
+      shade_row(shader_.scene, point_row<R>(s_, id_[k], number, reach_), n_, scratch_, out);
       fade_row(shader_.scene, id_[k], n_, out);
     }
   }
@@ -312,7 +398,8 @@ class Filler {
       for (R* plane : out_rows(k, y).plane)
         if (plane != nullptr) std::fill_n(plane, n_, R(0));
     }
-    const PointRow<R> means = point_row<R>(s_, face_.data(), [&](std::size_t i) { return mean_[i]; });
+    const PointRow<R> means = point_row<R>(
+        s_, face_.data(), [&](std::size_t i) { return mean_[i]; }, reach_);
     while (take_face_row<R>(left_.data(), samples_, n_, row_, face_.data(), mean_)) {
       shade_row(shader_.scene, means, n_, scratch_, color_);
       fade_row(shader_.scene, face_.data(), n_, color_);
@@ -323,9 +410,11 @@ class Filler {
 
   const State& s_;
   const Shader<R>& shader_;
-  const Tile &points_, &albedo_, &out_;
+  const Tile &points_, &albedo_, &visibility_, &out_;
   Arena& arena_;
-  kernels::FaceLight<R> faces_;
+  std::vector<kernels::FaceLight<R>> faces_;  // as Shader::lit
+  std::array<R*, 7> part_{};                  // rows of one light alone, and of how much of it reaches
+  std::vector<const R*> reach_;
   kernels::SamplePositions positions_;
   std::size_t n_, samples_;
   std::size_t lit_numbers_, numbers_;
@@ -342,12 +431,13 @@ class Filler {
 void tile(const State& s, const TilesOf<Inputs>& in, const TilesOf<Outputs>& out, Arena& arena) {
   const Tile& color = out[&Outputs::color];
   const Tile points = in[&Inputs::points].part(color.rect());
-  const Tile& given = in[&Inputs::albedo];
-  const Tile albedo = given.empty() ? given : given.part(color.rect());
+  const auto part = [&](const Tile& given) { return given.empty() ? given : given.part(color.rect()); };
+  const Tile albedo = part(in[&Inputs::albedo]);
+  const Tile visibility = s.reach.empty() ? Tile() : part(in[&Inputs::visibility]);
   if (std::holds_alternative<Shader<float>>(s.shader))
-    Filler<float>(s, points, albedo, color, arena).fill();
+    Filler<float>(s, points, albedo, visibility, color, arena).fill();
   else
-    Filler<double>(s, points, albedo, color, arena).fill();
+    Filler<double>(s, points, albedo, visibility, color, arena).fill();
 }
 
 }  // namespace
@@ -363,6 +453,8 @@ NodeType nodes::shade_surface() {
              "The mesh the points were seen on; flat and gouraud light its faces and vertices.")
       .input("albedo", &Inputs::albedo,
              "Colour that scales the diffuse and ambient light, such as a texture's.")
+      .input("visibility", &Inputs::visibility,
+             "How much of each light reaches each point; left out, nothing hides a light.")
       .input("material", &Inputs::material, "One material for everything, instead of the mesh's own.")
       .input("lights", &Inputs::lights, "Lights; without any, the picture is black.")
       .input("camera", &Inputs::camera, "Where highlights are seen from; left out, the camera of the mesh.")
@@ -379,7 +471,7 @@ NodeType nodes::shade_surface() {
       .effect(ambient_name, ambient_light, "Light from everywhere is added.")
       .effect(attenuation_name, attenuation, "The light of point lights is divided by its attenuation.")
       .effect(sides_name, two_sided_lighting, "Normals of faces that turn their back are turned around.")
-      .effect("shadows", shadows, "Light does not reach what something else stands in front of.")
+      .effect(shadows_name, shadows, "Light does not reach what something else stands in front of.")
       .output(
           "color", &Outputs::color,
           "Linear Rec.709, premultiplied; alpha is the face's opacity where a point is seen, 0 elsewhere.");

@@ -79,6 +79,7 @@ struct PointRow {
   std::array<const R*, 3> normal{}, position{};
   kernels::LightInput<R> received{};
   std::array<const R*, 3> albedo{};
+  std::span<const R* const> reach{};  ///< as kernels::PointRows
 };
 
 /// Scales a row's premultiplied colours by the opacity of the face that each shows; nothing seen stays nothing.
@@ -94,7 +95,7 @@ void fade_row(const Scene<R>& s, const std::uint32_t* id, std::size_t n, const k
 template <std::floating_point R>
 void shade_row(const Scene<R>& s, const PointRow<R>& in, std::size_t n, const RowScratch<R>& scratch,
                const kernels::ColorRows<R>& out) {
-  kernels::PointRows<R> points{in.normal, in.position, nullptr};
+  kernels::PointRows<R> points{in.normal, in.position, nullptr, in.reach};
   if (in.normal[0] != nullptr && !s.side.empty()) {
     for (std::size_t x = 0; x < n; ++x) scratch.side[x] = in.id[x] < s.side.size() ? s.side[in.id[x]] : R(1);
     points.sign = scratch.side;

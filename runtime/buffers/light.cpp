@@ -9,7 +9,7 @@
 namespace frustum {
 namespace {
 
-constexpr std::array kind_names{"ambient", "directional", "point", "spot"};
+constexpr std::array kind_names{"ambient", "directional", "point", "spot", "area"};
 
 Json json(const glm::dvec3& v) { return {json_number(v.x), json_number(v.y), json_number(v.z)}; }
 
@@ -19,26 +19,29 @@ struct Ops {
     h.value(s.lights.size());
     for (const Light& l : s.lights) {
       h.value(l.kind);
-      for (const glm::dvec3& v : {l.color, l.direction, l.position, l.attenuation})
+      for (const glm::dvec3& v : {l.color, l.direction, l.position, l.attenuation, l.edge_u, l.edge_v})
         h.value(v.x).value(v.y).value(v.z);
-      h.value(l.inner).value(l.outer);
+      h.value(l.inner).value(l.outer).value(l.samples);
     }
   }
   static void save(const LightSet& s, ArchiveWriter& w) {
     w.value(std::uint64_t{s.lights.size()});
     for (const Light& l : s.lights) {
       w.value(l.kind);
-      for (const glm::dvec3& v : {l.color, l.direction, l.position, l.attenuation}) w.raw(&v, sizeof v);
-      w.value(l.inner), w.value(l.outer);
+      for (const glm::dvec3& v : {l.color, l.direction, l.position, l.attenuation, l.edge_u, l.edge_v})
+        w.raw(&v, sizeof v);
+      w.value(l.inner), w.value(l.outer), w.value(l.samples);
     }
   }
   static LightSet load(ArchiveReader& r) {
     LightSet s;
     for (std::size_t n = r.count(sizeof(Light::Kind)); n > 0; --n) {
       Light& l = s.lights.emplace_back();
-      l.kind = r.choice(Light::Kind::spot);
-      for (glm::dvec3* v : {&l.color, &l.direction, &l.position, &l.attenuation}) r.raw(v, sizeof *v);
+      l.kind = r.choice(Light::Kind::area);
+      for (glm::dvec3* v : {&l.color, &l.direction, &l.position, &l.attenuation, &l.edge_u, &l.edge_v})
+        r.raw(v, sizeof *v);
       for (double* v : {&l.inner, &l.outer}) r.raw(v, sizeof *v);
+      r.raw(&l.samples, sizeof l.samples);
     }
     return s;
   }
@@ -59,7 +62,13 @@ struct Ops {
                                                             {"attenuation", l.attenuation.y},
                                                             {"attenuation", l.attenuation.z},
                                                             {"inner", l.inner},
-                                                            {"outer", l.outer}};
+                                                            {"outer", l.outer},
+                                                            {"edge_u", l.edge_u.x},
+                                                            {"edge_u", l.edge_u.y},
+                                                            {"edge_u", l.edge_u.z},
+                                                            {"edge_v", l.edge_v.x},
+                                                            {"edge_v", l.edge_v.y},
+                                                            {"edge_v", l.edge_v.z}};
       sum.add(health_of(s.lights.size() == 1 ? "light" : fmt::format("light {}", i), values));
     }
     return sum;
@@ -72,6 +81,9 @@ struct Ops {
       if (spot || l.kind == Light::Kind::directional) one["direction"] = json(l.direction);
       if (spot || l.kind == Light::Kind::point)
         one["position"] = json(l.position), one["attenuation"] = json(l.attenuation);
+      if (l.kind == Light::Kind::area)
+        one["position"] = json(l.position), one["edge_u"] = json(l.edge_u), one["edge_v"] = json(l.edge_v),
+        one["samples"] = l.samples;
       if (spot) one["inner"] = json_number(l.inner), one["outer"] = json_number(l.outer);
       lights.push_back(std::move(one));
     }

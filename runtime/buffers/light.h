@@ -12,7 +12,7 @@
 namespace frustum {
 
 struct Light {
-  enum class Kind : std::uint8_t { ambient, directional, point, spot };
+  enum class Kind : std::uint8_t { ambient, directional, point, spot, area };
   Kind kind = Kind::ambient;
   glm::dvec3 color{1};
   glm::dvec3 direction{0, -1,
@@ -22,6 +22,12 @@ struct Light {
   glm::dvec3 attenuation{1, 0, 0};  // point, spot: intensity is divided by x + y d + z d^2, d the distance
   double inner = 0,
          outer = 0;  // spot: angles from the axis, where the light starts to fade and where it ends
+  // area: sides of a rectangle around `position`, which shines alike from everywhere to where edge_u x edge_v points;
+  // its colour is what it looks like itself
+  glm::dvec3 edge_u{0}, edge_v{0};
+  std::uint32_t samples = 1;  // area: points that stand for it
+
+  bool has_place() const { return kind == Kind::point || kind == Kind::spot || kind == Kind::area; }
 };
 
 // What one link carries: all the lights of a scene, or just one.

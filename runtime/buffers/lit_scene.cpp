@@ -12,9 +12,18 @@ namespace {
 // below 2^127, the greatest exponent of binary32.
 constexpr double most = 0x1p14;
 bool tame(const glm::dvec3& c) { return c.r >= 0 && c.g >= 0 && c.b >= 0 && c.r + c.g + c.b <= most; }
+glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
 bool black(const glm::dvec3& c) { return c == glm::dvec3{0}; }
 
-bool tame(const Light& l) { return tame(l.color); }
+// A lamp with an area shines with its colour times that.
+bool tame(const Light& l) {
+  const glm::dvec3 n = cross(l.edge_u, l.edge_v);
+  return tame(l.color) && (l.kind != Light::Kind::area || tame(l.color * std::sqrt(dot(n, n))));
+}
 bool tame(const Material& m) {
   return tame(m.ambient) && tame(m.diffuse) && tame(m.specular) && tame(m.emission) && m.shininess >= 0 &&
          m.shininess <= 0x1p100;
@@ -46,11 +55,6 @@ double extent(std::span<const glm::dvec3> p) {
   }
   return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
 }
-
-glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 // Null where there is none, or where `tests` ran out.
 std::optional<InFront> find_in_front(const Mesh& mesh, std::span<const glm::dvec3> position,
@@ -135,14 +139,12 @@ Verdict needs_ambient(const LitScene& s, std::uint64_t points) {
 }
 
 bool falls_off(const Light& l) {
-  const bool has_place = l.kind == Light::Kind::point || l.kind == Light::Kind::spot;
-  return has_place && !black(l.color) && l.attenuation != glm::dvec3(1, 0, 0);
+  return l.has_place() && !black(l.color) &&
+         (l.kind == Light::Kind::area || l.attenuation != glm::dvec3(1, 0, 0));
 }
 
 Verdict needs_attenuation(const LitScene& s, std::uint64_t points) {
-  const auto place = s.light([](const Light& l) {
-    return (l.kind == Light::Kind::point || l.kind == Light::Kind::spot) && !black(l.color);
-  });
+  const auto place = s.light([](const Light& l) { return l.has_place() && !black(l.color); });
   if (!place) return off_exact("no light shines from a place", points);
   if (const auto falls = s.light(falls_off))
     return on(fmt::format("light {} grows weaker with the distance", *falls), points);
@@ -154,7 +156,7 @@ Verdict needs_shadows(const LitScene& s, std::span<const glm::dvec3> position) {
   if (!lamp) return off_exact("no light but ambient light, which casts no shadow");
   if (!s.used([](const Material& m) { return !m.unlit && !(black(m.diffuse) && black(m.specular)); }))
     return off_exact("no face has a material that sends the light of a lamp back");
-  constexpr std::string_view nothing = "nothing simulates shadows yet";
+  constexpr std::string_view nothing = "shade.shadow, linked to 'visibility', would find what it hides";
   if (position.size() != s.mesh.vertices())
     return absent(
         fmt::format("light {} shines, and the mesh has no world positions that could rule shadows out; {}",

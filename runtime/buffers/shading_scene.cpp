@@ -1,5 +1,10 @@
 #include "runtime/buffers/shading_scene.h"
 
+#include "nodes/kernels/lamp_pieces.h"
+#include "runtime/buffers/visible_lights.h"
+
+#include <numbers>
+
 namespace frustum {
 namespace {
 
@@ -44,18 +49,47 @@ kernels::ShadedSurface<R> surface_of(const Material& m, const glm::dvec3& ambien
 
 template <std::floating_point R>
 kernels::LightSource<R> source_of(const Light& light, const ShadingEffects& asked) {
-  const bool is_spot = light.kind == Light::Kind::spot,
-             is_point = is_spot || light.kind == Light::Kind::point;
-  kernels::LightSource<R> s{is_point, narrow_color<R>(light.color),
-                            narrow<R>(is_point ? light.position : -light.direction),
+  kernels::LightSource<R> s{light.has_place(), narrow_color<R>(light.color),
+                            narrow<R>(light.has_place() ? light.position : -light.direction),
                             narrow<R>(light.attenuation)};
   s.falls_off = asked.attenuation && (asked.all_attenuation || falls_off(light));
-  if (is_spot) {
+  if (light.kind == Light::Kind::spot) {
     const kernels::Cone cone(light.inner, light.outer);
     s.is_spot = true, s.axis = narrow<R>(light.direction);
     s.cone_scale = static_cast<R>(cone.scale), s.cone_offset = static_cast<R>(cone.offset);
   }
   return s;
+}
+
+// A lamp of radiance L and area A lights a surface like n pieces of L A / n: what a white surface sends back of it is
+// E / pi, and each piece adds L A / n cos(surface) cos(lamp) / d^2 to E.
+template <std::floating_point R>
+void add_pieces(const Light& light, const ShadingEffects& asked, std::vector<kernels::LightSource<R>>& to) {
+  const kernels::LampPieces lamp(light.position, light.edge_u, light.edge_v, light.samples);
+  for (std::uint32_t i = 0; i < light.samples; ++i) {
+    Light piece = light;
+    piece.position = lamp.point(i);
+    piece.color = light.color * (lamp.area() / (std::numbers::pi * light.samples));
+    piece.attenuation = {0, 0, 1};
+    kernels::LightSource<R> s = source_of<R>(piece, asked);
+    s.is_patch = true, s.axis = narrow<R>(lamp.axis());
+    to.push_back(s);
+  }
+}
+
+template <std::floating_point R>
+std::vector<kernels::LightSource<R>> sources_of(std::span<const Ref<LightSet>> lights,
+                                                const ShadingEffects& asked) {
+  std::vector<kernels::LightSource<R>> all;
+  for (const Ref<LightSet>& set : lights)
+    for (const Light& light : set->lights) {
+      if (light.kind == Light::Kind::ambient || light.color == glm::dvec3{0}) continue;
+      if (light.kind == Light::Kind::area)
+        add_pieces(light, asked, all);
+      else
+        all.push_back(source_of<R>(light, asked));
+    }
+  return all;
 }
 
 }  // namespace
@@ -78,12 +112,9 @@ kernels::ShadingScene<R> make_shading_scene(const LitScene& lit, const Camera* c
   kernels::ShadingScene<R> s;
   glm::dvec3 ambient{0};
   for (const Ref<LightSet>& set : lit.lights)
-    for (const Light& light : set->lights) {
-      if (light.kind == Light::Kind::ambient)
-        ambient += light.color;
-      else if (light.color != glm::dvec3{0})
-        s.lights.push_back(source_of<R>(light, asked));
-    }
+    for (const Light& light : set->lights)
+      if (light.kind == Light::Kind::ambient) ambient += light.color;
+  s.lights = sources_of<R>(lit.lights, asked);
   bool needs_eye = false;
   for (const auto& m : lit.materials) {
     kernels::ShadedSurface<R> surface = surface_of<R>(*m, ambient, asked);
@@ -105,6 +136,16 @@ kernels::ShadingScene<R> make_shading_scene(const LitScene& lit, const Camera* c
     s.surface_of.assign(of.begin(), of.end());
   }
   return s;
+}
+
+std::vector<kernels::LightSource<double>> light_sources(std::span<const Ref<LightSet>> lights) {
+  return sources_of<double>(lights, {.highlights = true,
+                                     .ambient = true,
+                                     .attenuation = true,
+                                     .sides = true,
+                                     .all_highlights = false,
+                                     .all_attenuation = false,
+                                     .all_sides = false});
 }
 
 template Ref<Column> world_positions<float>(const Mesh&);

@@ -29,6 +29,7 @@ Parts plain() {
           {"light", R"({ "type": "light.directional", "params": { "direction": [-1, -2, -1] } })"},
           {"material", R"({ "diffuse": [0.7, 0.3, 0.2] })"},
           {"texture", ""},
+          {"shadow", ""},
           {"pyramid", "true"},
           {"filter", R"("trilinear")"},
           {"shading", R"({ "interpolation": "phong" })"},
@@ -46,8 +47,16 @@ std::string text_of(const Parts& p, const std::string& folder) {
                         folder, at("texture"), at("pyramid"));
     link = R"(, "texture": "card")";
   }
+  std::string shadow, visibility;
+  if (!at("shadow").empty()) {
+    shadow =
+        fmt::format(R"("shadow": {{ "type": "shade.shadow", "in": {{ "points": "points", "mesh": "screen",
+               "casters": "{}", "lights": ["light"] }} }},)",
+                    at("shadow"));
+    visibility = R"(, "visibility": "shadow")";
+  }
   return fmt::format(R"({{ "format": "frustum.graph/1", "nodes": {{
-      "mesh": {}, "light": {}, {}
+      "mesh": {}, "light": {}, {} {}
       "camera": {{ "type": "scene.camera", "params": {{ "eye": {}, "resolution": [56, 40] }} }},
       "material": {{ "type": "shade.material", "params": {} }},
       "eye": {{ "type": "project.view", "in": {{ "mesh": "mesh", "camera": "camera" }} }},
@@ -60,12 +69,13 @@ std::string text_of(const Parts& p, const std::string& folder) {
       "points": {{ "type": "rasterize.attributes", "in": {{ "hits": "hits", "mesh": "screen" }} }},
       "albedo": {{ "type": "texture.sample", "in": {{ "points": "points", "mesh": "screen"{} }}, "params": {{ "filter": {} }} }},
       "lit": {{ "type": "shade.surface", "in": {{ "points": "points", "mesh": "screen", "albedo": "albedo",
-               "material": "material", "lights": ["light"] }}, "params": {} }},
+               "material": "material", "lights": ["light"]{} }}, "params": {} }},
       "pixels": {{ "type": "supersample.resolve", "in": {{ "image": "lit" }}, "params": {} }},
       "display": {{ "type": "color.convert", "in": {{ "image": "pixels" }}, "params": {{ "to": {} }} }} }},
     "outputs": {{ "image": {{ "from": "display" }} }} }})",
-                     at("mesh"), at("light"), image, at("eye"), at("material"), at("projection"),
-                     at("samples"), link, at("filter"), at("shading"), at("resolve"), at("space"));
+                     at("mesh"), at("light"), image, shadow, at("eye"), at("material"), at("projection"),
+                     at("samples"), link, at("filter"), visibility, at("shading"), at("resolve"),
+                     at("space"));
 }
 
 struct Case {
@@ -98,6 +108,10 @@ std::vector<Case> cases() {
       {"highlights",
        {{"shading", R"({ "interpolation": "flat", "rate": "pixel" })"}},
        {{"shading", R"({ "interpolation": "flat", "rate": "pixel" })"}, {"material", shiny}}},
+      {"shadows",
+       {{"mesh", floor_around}, {"eye", "[0, 2, 3]"}, {"shadow", "mesh"}},
+       {{"mesh", R"({ "type": "mesh.torus" })"}, {"shadow", "mesh"}}},
+      {"shadows", {{"light", sky}, {"shadow", "mesh"}}, {{"light", fading}, {"shadow", "mesh"}}},
       {"ambient_light", {}, {{"light", sky}}},
       {"ambient_light",
        {{"light", sky}, {"material", R"({ "ambient": 0 })"}},

@@ -101,17 +101,20 @@ HWY_INLINE void receive_vector(const LightSetup<float>& s, const PointRows<float
   if (in.position[0] != nullptr) p = load3(in.position, x);
   if (s.highlight != Highlight::none) v = unit(sub3(set3(s.eye), p));
   V3 diffuse{zero, zero, zero}, specular{zero, zero, zero};
-  for (const LightSource<float>& light : s.lights) {
+  for (std::size_t i = 0; i < s.lights.size(); ++i) {
+    const LightSource<float>& light = s.lights[i];
+    const float* reach = in.reach_of(i);
     V3 l = set3(light.place);
-    V strength = one;
+    V strength = reach == nullptr ? one : hn::LoadU(d, reach + x);
     if (light.is_point) {
       const V3 to = sub3(l, p), a = set3(light.attenuation);
       const V square = dot(to, to), distance = hn::Sqrt(square);
       l = unit(to);
       if (light.falls_off) {
-        strength = hn::Div(one, hn::Add(hn::Add(a[0], hn::Mul(a[1], distance)), hn::Mul(a[2], square)));
+        V weaker = hn::Div(one, hn::Add(hn::Add(a[0], hn::Mul(a[1], distance)), hn::Mul(a[2], square)));
         const V most = hn::Set(d, static_cast<float>(greatest_strength));
-        strength = hn::IfThenElse(hn::Lt(strength, most), strength, most);
+        weaker = hn::IfThenElse(hn::Lt(weaker, most), weaker, most);
+        strength = hn::Mul(strength, weaker);
       }
       if (light.is_spot) {
         V t = hn::Sub(hn::Set(d, light.cone_offset),
@@ -119,6 +122,10 @@ HWY_INLINE void receive_vector(const LightSetup<float>& s, const PointRows<float
         t = hn::IfThenElseZero(hn::Gt(t, zero), t);
         t = hn::IfThenElse(hn::Lt(t, one), t, one);
         strength = hn::Mul(strength, hn::Mul(t, t));
+      }
+      if (light.is_patch) {
+        const V cosine = hn::Neg(dot(l, set3(light.axis)));
+        strength = hn::Mul(strength, hn::IfThenElseZero(hn::Gt(cosine, zero), cosine));
       }
     }
     const V n_l = dot(n, l);
@@ -148,9 +155,11 @@ void receive(const LightSetup<float>& s, const PointRows<float>& in, Selection w
   for (; x + lanes <= n; x += lanes)
     if (!hn::AllFalse(d, selected(which, x))) receive_vector(s, in, x, out);
   if (x < n)
-    kernels::receive_light<float>(
-        s, {advanced(in.normal, x), advanced(in.position, x), in.sign == nullptr ? nullptr : in.sign + x},
-        {which.tag + x, which.wanted}, n - x, {advanced(out.diffuse, x), advanced(out.specular, x)});
+    kernels::receive_light<float>(s,
+                                  {advanced(in.normal, x), advanced(in.position, x),
+                                   in.sign == nullptr ? nullptr : in.sign + x, in.reach, in.first + x},
+                                  {which.tag + x, which.wanted}, n - x,
+                                  {advanced(out.diffuse, x), advanced(out.specular, x)});
 }
 
 void reflect(const SurfaceColors<float>& c, const LightInput<float>& light,

@@ -123,8 +123,8 @@ TEST(Lighting, PointLightsFallOffWithTheSquareOfDistance) {
 TEST(Lighting, ASpotFadesLikeTheSquareOfARampInTheCosine) {
   constexpr double inner = 0.3, outer = 0.7;
   const kernels::Cone cone(inner, outer);
-  const kernels::LightSource<double> light{true, {1, 1, 1},  {0, 0, 1},  {1, 0, 0},
-                                           true, {0, 0, -1}, cone.scale, cone.offset};
+  const kernels::LightSource<double> light{true,  {1, 1, 1},  {0, 0, 1},  {1, 0, 0},  true,
+                                           false, {0, 0, -1}, cone.scale, cone.offset};
   // Points on the plane z = 0 at an angle from the axis; their normals look at the light.
   const auto at = [&](double angle) {
     const double x = std::tan(angle);
@@ -174,6 +174,27 @@ TEST(Lighting, PowersBySquaringMeetTheirBound) {
   EXPECT_EQ(kernels::Exponent<float>(1e5)(0.9F), 0);
 }
 
+// What reaches a point of each light scales all that light, and 1 changes no bit.
+TEST(Lighting, LightIsScaledByWhatOfItReachesThePoint) {
+  const kernels::LightSource<double> lights[] = {{false, {1, 2, 3}, {0.6, 0, 0.8}, {}},
+                                                 {true, {3, 2, 1}, {0.5, 1, 2}, {0.1, 0.2, 1}}};
+  const Triple<double> n{0.1, 0.2, 1}, p{0.3, 0, 0};
+  const auto by = [&](std::span<const kernels::LightSource<double>> some,
+                      const std::array<double, 2>& share) {
+    const kernels::LightSetup<double> s{some, {1, 2, 3}, Highlight::blinn, kernels::Exponent<double>(9)};
+    return kernels::receive(s, n, p, [&](std::size_t i) { return share[i]; });
+  };
+  const std::span all(lights);
+  const auto first = by(all.first(1), {1, 1}), second = by(all.last(1), {1, 1}), some = by(all, {0.25, 0.5});
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(some.diffuse[k], 0.25 * first.diffuse[k] + 0.5 * second.diffuse[k], 1e-15);
+    EXPECT_NEAR(some.specular[k], 0.25 * first.specular[k] + 0.5 * second.specular[k], 1e-15);
+  }
+  const kernels::LightSetup<double> s{all, {1, 2, 3}, Highlight::blinn, kernels::Exponent<double>(9)};
+  EXPECT_EQ(by(all, {1, 1}).diffuse, kernels::receive(s, n, p).diffuse);
+  EXPECT_EQ(by(all, {0, 0}).diffuse, (Triple<double>{0, 0, 0}));
+}
+
 struct RandomRows {
   std::vector<std::vector<float>> row;
   std::vector<std::uint32_t> tag;
@@ -212,14 +233,20 @@ TEST(LightingSimd, EveryTargetHasTheBitsOfTheScalarTwin) {
       {false, {1, 0.5F, 0.2F}, {0.6F, 0, 0.8F}, {}},
       {true, {3, 2, 1}, {0.5F, 1, 2}, {0.1F, 0.2F, 1}},
       {true, {1, 1, 1}, {-1, 0, 0}, {0, 0, 1}},
-      {true, {2, 1, 1}, {1, 1, 1}, {1, 0, 0.1F}, true, {-0.6F, 0, -0.8F}, 3.0F, -1.5F}};
+      {true, {2, 1, 1}, {1, 1, 1}, {1, 0, 0.1F}, true, false, {-0.6F, 0, -0.8F}, 3.0F, -1.5F},
+      {true, {4, 3, 1}, {0, 1, 1}, {0, 0, 1}, false, true, {0, -0.6F, -0.8F}}};
+  std::vector<float> some(n + 3);
+  test::Random random(11);
+  for (float& share : some) share = random.below(3) == 0 ? 0.0F : static_cast<float>(random.uniform(0, 1));
+  const std::array<const float*, 5> shares{some.data(), nullptr, some.data() + 3, nullptr, some.data() + 1};
   for (const Highlight h : {Highlight::none, Highlight::phong, Highlight::blinn})
     for (const double e : {0.0, 1.0, 60.0, 33.3})
       for (const std::uint32_t wanted : {kernels::nothing_there, 1u})
         for (const bool turned : {false, true}) {
           const kernels::LightSetup<float> setup{lights, {1, 2, 3}, h, kernels::Exponent<float>(e)};
-          const kernels::PointRows<float> points{in.three(0), in.three(3),
-                                                 turned ? in.row[6].data() : nullptr};
+          const kernels::PointRows<float> points{
+              in.three(0), in.three(3), turned ? in.row[6].data() : nullptr,
+              turned ? std::span<const float* const>(shares) : std::span<const float* const>()};
           const kernels::Selection which{in.tag.data(), wanted};
           std::vector<std::vector<float>> truth(10, std::vector<float>(n, 7)), simd = truth;
           const auto run = [&](auto receive, auto reflect, std::vector<std::vector<float>>& out) {
