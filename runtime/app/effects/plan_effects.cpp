@@ -95,7 +95,7 @@ const EffectDoc* find_effect(const NodeType& type, std::string_view effect) {
   return nullptr;
 }
 
-bool is_simulated(std::string_view effect) { return effect != "shadows" && effect != "transparency"; }
+bool is_simulated(std::string_view effect) { return effect != "transparency"; }
 
 EffectPlan plan_effects(Session& session, const Graph& graph, const Demand& demand, const RunOptions& base) {
   RunOptions options = base;

@@ -38,8 +38,8 @@ EffectPlan plan_effects(Session&, const Graph&, const Demand&, const RunOptions&
 // How the effects of a graph's nodes, and of runs, are declared; null where there is none of that name.
 const EffectDoc* find_effect(const NodeType&, std::string_view effect);
 
-// Whether some node simulates the effect where it is called for: scenes can call for shadows and transparency, and nothing
-// simulates those yet.
+// Whether some node simulates the effect where it is called for: scenes can call for transparency, and no node that
+// declares the effect simulates it.
 bool is_simulated(std::string_view effect);
 
 // Every name that --force-effects and --skip-effects take, sorted.
