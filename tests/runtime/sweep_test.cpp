@@ -220,7 +220,7 @@ TEST(Sweep, GoesOnWhereItWasCutOff) {
   EXPECT_EQ(again.resumed, 1u);
   for (std::size_t i = 0; i < whole.points.size(); ++i) {
     EXPECT_EQ(again.points[i].errors, whole.points[i].errors);
-    EXPECT_EQ(again.points[i].own_error, whole.points[i].own_error);
+    EXPECT_EQ(again.points[i].own_errors, whole.points[i].own_errors);
     EXPECT_EQ(again.points[i].times.size(), 2u);
   }
   const Sweep third = swept(o);
@@ -273,7 +273,7 @@ TEST(Sweep, MeshesAreSweptToo) {
   const TempFolder folder;
   SweepOptions o = small(folder, {"precision=single,double"});
   o.want = "mesh.mesh";
-  const Sweep s = swept(o);
+  Sweep s = swept(o);
   EXPECT_GT(s.points.front().error("rmse"), 0);
   EXPECT_THAT(sweep_html(s), HasSubstr("mesh.mesh"));
 }
@@ -282,7 +282,7 @@ TEST(SweepReport, ThePageNeedsNoOtherFile) {
   const TempFolder folder;
   SweepOptions o = small(folder, {"samples=1,4,16"});
   o.metrics = {"rmse", "flip"};
-  const Sweep s = swept(o);
+  Sweep s = swept(o);
   const auto files = write_sweep(s);
   ASSERT_EQ(files.size(), 3u);
   const std::string page = read_text(files[2]);

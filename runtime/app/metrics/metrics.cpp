@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <tbb/parallel_for.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -21,6 +22,14 @@ namespace frustum {
 namespace {
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+// Infinite where one is NaN.
+template <class T>
+T distance(T a, T b) {
+  if (a == b) return 0;
+  const T e = std::abs(a - b);
+  return std::isnan(e) ? std::numeric_limits<T>::infinity() : e;
+}
 
 constexpr std::array all_metrics{
     Metric{"rmse", "", "Root of the mean squared difference of all numbers."},
@@ -207,15 +216,24 @@ std::vector<float> error_map(const Raster& a, const Raster& b) {
   for (std::size_t p = 0; p < f.planes.size(); ++p) {
     const auto q = b.frame().find(f.planes[p].name);
     if ((numbers && is_id(p)) || !q) continue;
-    std::size_t i = 0;
-    for (int y = f.window.y0; y < f.window.y1; ++y)
-      for (int x = f.window.x0; x < f.window.x1; ++x, ++i)
+    const auto width = static_cast<std::size_t>(f.window.width());
+    const bool floats = f.planes[p].kind == PlaneKind::f32 &&
+                        b.frame().planes[static_cast<std::size_t>(*q)].kind == PlaneKind::f32;
+    tbb::parallel_for(f.window.y0, f.window.y1, [&](int y) {
+      float* row = out.data() + static_cast<std::size_t>(y - f.window.y0) * width;
+      for (int s = 0; floats && s < f.samples(); ++s) {
+        const float* va = a.view().row<float>(static_cast<int>(p), s, y);
+        const float* vb = b.view().row<float>(*q, s, y);
+        for (std::size_t i = 0; i < width; ++i) row[i] = std::max(row[i], distance(va[i], vb[i]));
+      }
+      if (floats) return;
+      for (int x = f.window.x0; x < f.window.x1; ++x, ++row)
         for (int s = 0; s < f.samples(); ++s) {
           const double va = a.value(static_cast<int>(p), s, x, y), vb = b.value(*q, s, x, y);
-          const double e = va == vb ? 0 : is_id(p) ? 1 : std::abs(va - vb);
-          out[i] = std::max(out[i],
-                            std::isnan(e) ? std::numeric_limits<float>::infinity() : static_cast<float>(e));
+          const double e = !is_id(p) ? distance(va, vb) : va == vb ? 0 : 1;
+          *row = std::max(*row, static_cast<float>(e));
         }
+    });
   }
   return out;
 }

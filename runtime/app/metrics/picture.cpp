@@ -1,7 +1,6 @@
 #include "runtime/app/metrics/picture.h"
 
 #include "runtime/buffers/image.h"
-#include "runtime/io/color.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +9,6 @@
 #include <numeric>
 
 namespace frustum {
-namespace {
 
 std::vector<int> color_planes(const Frame& f) {
   std::vector<int> out;
@@ -21,7 +19,11 @@ std::vector<int> color_planes(const Frame& f) {
   return {};
 }
 
-}  // namespace
+ColorConversion to_linear_light(const Raster& raster) {
+  const std::string& space = raster.frame().color_space;
+  const ColorConfig& config = ColorConfig::embedded();
+  return config.conversion(space.empty() ? std::string(linear_rec709) : config.resolve(space), linear_rec709);
+}
 
 double mean(const Grid& g) {
   if (g.values.empty()) return 0;
@@ -46,9 +48,7 @@ Picture picture_of(const Raster& raster) {
   const auto alpha = f.alpha == Alpha::straight ? f.find("A") : std::nullopt;
   Picture p;
   p.rgb.fill(Grid(f.window.width(), f.window.height()));
-  const ColorConfig& config = ColorConfig::embedded();
-  const std::string from(f.color_space.empty() ? std::string(linear_rec709) : config.resolve(f.color_space));
-  const ColorConversion to_linear = config.conversion(from, linear_rec709);
+  const ColorConversion to_linear = to_linear_light(raster);
   for (int y = 0; y < p.height(); ++y) {
     std::array<double*, 3> row{};
     for (std::size_t c = 0; c < 3; ++c) {

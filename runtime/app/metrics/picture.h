@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/core/raster.h"
+#include "runtime/io/color.h"
 
 #include <array>
 #include <string>
@@ -35,8 +36,15 @@ struct Picture {
   bool has_nan() const;
 };
 
+// The planes R, G, B, or Y three times; empty where there are neither.
+std::vector<int> color_planes(const Frame&);
+
 // Why a raster is no picture, or an empty text: it needs the planes R, G, B (or Y) and one value a pixel.
 std::string no_picture(const Frame&);
+
+// From the raster's colour space, where it names none from linear Rec.709, to that. Throws
+// NodeError("unknown_color_space").
+ColorConversion to_linear_light(const Raster&);
 
 // Converts from the raster's colour space; without one, it is linear Rec.709. Throws
 // NodeError("unknown_color_space").

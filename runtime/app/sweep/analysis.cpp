@@ -40,14 +40,14 @@ KnobFit fit_knob(const Sweep& s, std::size_t k) {
   std::vector<std::pair<double, double>> values, times, works;
   bool all_zero = true;
   for (const SweepPoint& p : s.points) {
-    if (!p.own_error || (p.knob && *p.knob != k)) continue;
-    if (p.knob && p.own_error) all_zero &= *p.own_error == 0;
+    const auto own = p.own_error(k);
+    if (!own) continue;
+    all_zero &= *own == 0;
     const auto v = number_of_setting(p.values[k]);
-    // The graph as it is, is a point of every knob; its own error is another's.
-    if (!p.knob || !v || !exact || !(std::abs(std::log(*v / *exact)) >= std::log(4.0) * (1 - 1e-9))) continue;
-    values.emplace_back(*v, *p.own_error);
-    times.emplace_back(milliseconds(median_of(p)), *p.own_error);
-    works.emplace_back(static_cast<double>(p.work), *p.own_error);
+    if (!v || !exact || !(std::abs(std::log(*v / *exact)) >= std::log(4.0) * (1 - 1e-9))) continue;
+    values.emplace_back(*v, *own);
+    times.emplace_back(milliseconds(median_of(p)), *own);
+    works.emplace_back(static_cast<double>(p.work), *own);
   }
   fit.without_effect = all_zero;
   fit.over_value = fit_slope(values), fit.over_time = fit_slope(times), fit.over_work = fit_slope(works);
@@ -101,6 +101,11 @@ void analyse(Sweep& s) {
   if (s.options.grid) return;
   for (std::size_t k = 0; k < s.knobs.size(); ++k) s.fits.push_back(fit_knob(s, k));
   if (!s.points.empty()) s.steps = steps_from_the_first(s);
+}
+
+std::optional<bool> agrees_with_theory(const KnobFit& fit, const SweepKnob& knob) {
+  if (!fit.over_value || !knob.slope) return std::nullopt;
+  return std::abs(fit.over_value->slope - *knob.slope) <= slope_tolerance;
 }
 
 std::optional<double> number_of_setting(const std::string& value) {

@@ -15,6 +15,13 @@ std::optional<SlopeFit> fit_slope(std::span<const std::pair<double, double>> x_a
 // Fills fits, steps and the points' pareto.
 void analyse(Sweep&);
 
+// A fitted slope agrees with its theory if it is no further from it than this: what the powers left out of the theory
+// (the next term of the error, the exact value's own error) bend a line of some five points by.
+inline constexpr double slope_tolerance = 0.15;
+
+// Whether the slope over values is the one that theory expects; nothing where there is no theory or no fit.
+std::optional<bool> agrees_with_theory(const KnobFit&, const SweepKnob&);
+
 // A setting as a number: JSON numbers; nothing for the rest.
 std::optional<double> number_of_setting(const std::string& value);
 

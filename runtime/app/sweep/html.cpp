@@ -29,7 +29,7 @@ std::string error_text(double e) { return e == 0 ? "0" : fmt::format("{:.3g}", e
 
 class Page {
  public:
-  explicit Page(const Sweep& s) : s_(s), metric_(s.options.metrics.front()) {}
+  explicit Page(Sweep& s) : s_(s), metric_(s.options.metrics.front()) {}
 
   std::string text() {
     std::string out = fmt::format(
@@ -41,11 +41,15 @@ class Page {
         "'unsafe-inline'; img-src data:\">\n<title>{} - what accuracy "
         "costs</title>\n<style>{}</style>\n</head>\n<body><main>\n",
         escaped(s_.title), page_style);
-    out += header() + main_plot() + knobs() + buys() + wall() + table() + method();
+    const auto began = std::chrono::steady_clock::now();
+    const std::string body = main_plot() + knobs() + buys() + wall() + table(), points = points_json();
+    const double more = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    s_.costs.report += more, s_.costs.total += more;
+    out += header() + body + method();
     return out + fmt::format(
                      "</main>\n<script type=\"application/json\" "
                      "id=\"points\">{}</script>\n<script>{}</script>\n</body></html>\n",
-                     points_json(), page_script);
+                     points, page_script);
   }
 
  private:
@@ -72,7 +76,9 @@ class Page {
         tile(std::to_string(front), "on the Pareto front"),
         tile(ms_text(time(*fast)) + " – " + ms_text(time(*slow)), "fastest and slowest"),
         tile(std::to_string(s_.options.repeats), "timed runs of each, in turns"),
-        tile(ms_text(s_.total_s * 1000), "for the whole sweep"));
+        tile(ms_text(s_.costs.total * 1000),
+             fmt::format("for the whole sweep, {:.1f} % of it measuring overhead",
+                         100 * s_.costs.overhead())));
   }
   static std::string tile(const std::string& value, const std::string& label) {
     return fmt::format("<div><div class=\"value\">{}</div><div class=\"label\">{}</div></div>", value, label);
@@ -183,10 +189,10 @@ class Page {
   static std::string slopes(const KnobFit& fit, const SweepKnob& knob) {
     std::string out = "<div class=\"slopes\">";
     if (fit.over_value) {
-      const bool near = knob.slope && std::abs(fit.over_value->slope - *knob.slope) <= 0.15;
+      const auto agrees = agrees_with_theory(fit, knob);
       out += fmt::format("<span>error ~ value<sup><b class=\"{}\">{:+.2f}</b></sup></span>",
-                         knob.slope ? near ? "good" : "off" : "", fit.over_value->slope);
-      if (knob.slope) out += fmt::format("<span>theory {:+.2f}</span>", *knob.slope);
+                         agrees ? *agrees ? "good" : "off" : "", fit.over_value->slope);
+      if (agrees) out += fmt::format("<span>theory {:+.2f}: {}</span>", *knob.slope, theory_text(fit, knob));
     }
     if (fit.over_time)
       out += fmt::format("<span>error ~ time<sup><b>{:+.2f}</b></sup></span>", fit.over_time->slope);
@@ -209,11 +215,12 @@ class Page {
     for (std::size_t v = 0; v < knob.values.size(); ++v)
       for (std::size_t i = 0; i < s_.points.size(); ++i) {
         const SweepPoint& p = s_.points[i];
-        if (p.knob != fit.knob || p.values[fit.knob] != knob.values[v] || !p.own_error) continue;
-        if (numbers && *p.own_error == 0) continue;
+        const auto own = p.own_error(fit.knob);
+        if (!own || p.values[fit.knob] != knob.values[v] || (numbers && *own == 0)) continue;
         series.points.push_back(
-            {numbers ? *number_of_setting(knob.values[v]) : static_cast<double>(v), *p.own_error,
-             fmt::format("{}\nown error {}", short_name(p), error_text(*p.own_error)), i, false});
+            {numbers ? *number_of_setting(knob.values[v]) : static_cast<double>(v), *own,
+             fmt::format("{} = {}\nown error {}", knob.address, knob.values[v], error_text(*own)), i,
+             !p.knob});
       }
     if (numbers && fit.over_value) {
       plot.lines.push_back({fit.over_value->slope, fit.over_value->intercept, false});
@@ -228,7 +235,7 @@ class Page {
     double x = 0;
     int n = 0;
     for (const SweepPoint& p : s_.points)
-      if (p.knob == fit.knob && p.own_error && *p.own_error > 0)
+      if (const auto own = p.own_error(fit.knob); own && *own > 0 && number_of_setting(p.values[fit.knob]))
         x += std::log10(*number_of_setting(p.values[fit.knob])), ++n;
     x /= std::max(1, n);
     return fit.over_value->intercept + (fit.over_value->slope - *knob.slope) * x;
@@ -297,7 +304,7 @@ class Page {
       for (const std::string& m : s_.options.metrics)
         rows += fmt::format("<td>{}</td>", error_text(p.error(m)));
       rows += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.5g}</td><td>{}</td></tr>\n",
-                          p.own_error ? error_text(*p.own_error) : "", ms_text(milliseconds(min_of(p))),
+                          p.own_error() ? error_text(*p.own_error()) : "", ms_text(milliseconds(min_of(p))),
                           ms_text(time(p)), ms_text(milliseconds(deviation_of(p))),
                           static_cast<double>(p.work), p.pareto ? "●" : "");
     }
@@ -316,8 +323,9 @@ class Page {
         "once.</li>"
         "<li>Work is counted, not timed: vertices, triangles and samples that all nodes went through; it is "
         "the same on every machine. Times are of one machine and drift by some percent.</li>"
-        "<li>{:.1f} s of {:.1f} s were spent in runs. {}; frustum {} ({}).</li></ul></section>\n",
-        s_.options.repeats, s_.runs_s, s_.total_s, escaped(s_.machine), version, build_id());
+        "<li>Where the time of the sweep went: {}. The overhead is the share in which no graph ran.</li>"
+        "<li>{}; frustum {} ({}).</li></ul></section>\n",
+        s_.options.repeats, costs_text(s_.costs), escaped(s_.machine), version, build_id());
   }
 
   std::string points_json() const {
@@ -346,12 +354,12 @@ class Page {
     return out + "\"";
   }
 
-  const Sweep& s_;
+  Sweep& s_;
   const std::string metric_;
 };
 
 }  // namespace
 
-std::string sweep_html(const Sweep& s) { return Page(s).text(); }
+std::string sweep_html(Sweep& s) { return Page(s).text(); }
 
 }  // namespace frustum

@@ -57,14 +57,19 @@ SweepJournal::SweepJournal(std::filesystem::path file, const std::string& sweep,
 }
 
 SweepJournal::~SweepJournal() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  if (descriptor_ < 0) return;
+  ::fdatasync(descriptor_);
+  ::close(descriptor_);
 }
 
 void SweepJournal::append(const Json& entry) {
   const std::string line = entry.dump() + "\n";
-  if (::write(descriptor_, line.data(), line.size()) != static_cast<ssize_t>(line.size()) ||
-      ::fdatasync(descriptor_) != 0)
+  if (::write(descriptor_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
     cannot_write(file_);
+  if (const auto now = std::chrono::steady_clock::now(); now - synced_ >= std::chrono::seconds(1)) {
+    if (::fdatasync(descriptor_) != 0) cannot_write(file_);
+    synced_ = now;
+  }
 }
 
 }  // namespace frustum

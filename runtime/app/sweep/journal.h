@@ -3,6 +3,7 @@
 
 #include "runtime/core/diagnostic.h"
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -21,13 +22,15 @@ class SweepJournal {
 
   const std::vector<Json>& entries() const { return entries_; }
 
-  // One line in one write, on the disk when it returns.
+  // One line in one write: when it returns, the line survives the end of the program, and the end of power about a
+  // second later (waiting for the disk at each line was 1.7 % of a sweep).
   void append(const Json& entry);
 
  private:
   std::filesystem::path file_;
   std::vector<Json> entries_;
   int descriptor_ = -1;
+  std::chrono::steady_clock::time_point synced_ = {};
 };
 
 }  // namespace frustum

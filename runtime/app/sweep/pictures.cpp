@@ -6,10 +6,15 @@
 #include "runtime/app/metrics/metrics.h"
 #include "runtime/app/metrics/picture.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 namespace frustum {
 namespace {
@@ -31,15 +36,83 @@ std::array<double, 3> heat(double t) {
   return out;
 }
 
-// Encoded sRGB values, one value a pixel.
+// Encoded sRGB values of a thumbnail, one value a pixel.
 using Encoded = std::array<Grid, 3>;
 
+// A thumbnail's size: smaller by a whole factor.
+struct Reduction {
+  int factor, width, height;
+};
+Reduction reduction_of(const Rect& window) {
+  const int factor = (window.width() + thumbnail_width - 1) / thumbnail_width;
+  return {factor, (window.width() + factor - 1) / factor, (window.height() + factor - 1) / factor};
+}
+
+// Pixels of the original in one of the thumbnail: fewer at the right and lower border.
+double area(const Rect& window, const Reduction& r, int x, int y) {
+  return std::min(r.factor, window.width() - x * r.factor) *
+         std::min(r.factor, window.height() - y * r.factor);
+}
+
+// One row of three planes, as linear light over black that a display can show.
+class LightRows {
+ public:
+  explicit LightRows(const Raster& raster)
+      : raster_(raster),
+        planes_(color_planes(raster.frame())),
+        alpha_(raster.frame().alpha == Alpha::straight ? raster.frame().find("A") : std::nullopt),
+        to_linear_(to_linear_light(raster)) {}
+
+  void read(int y, std::array<std::vector<float>, 3>& rgb) const {
+    const Rect& window = raster_.frame().window;
+    const auto width = static_cast<std::size_t>(window.width());
+    for (std::size_t c = 0; c < 3; ++c) {
+      rgb[c].resize(width);
+      if (raster_.frame().planes[static_cast<std::size_t>(planes_[c])].kind == PlaneKind::f32)
+        std::copy_n(raster_.view().row<float>(planes_[c], 0, window.y0 + y), width, rgb[c].data());
+      else
+        for (std::size_t i = 0; i < width; ++i) rgb[c][i] = value(planes_[c], static_cast<int>(i), y);
+    }
+    to_linear_.apply(rgb[0].data(), rgb[1].data(), rgb[2].data(), width);
+    for (std::vector<float>& row : rgb)
+      for (std::size_t i = 0; i < width; ++i) {
+        const float v = alpha_ ? row[i] * value(*alpha_, static_cast<int>(i), y) : row[i];
+        row[i] = std::isnan(v) ? 0 : std::clamp(v, 0.0f, 1.0f);
+      }
+  }
+
+ private:
+  float value(int plane, int x, int y) const {
+    const Rect& window = raster_.frame().window;
+    return static_cast<float>(raster_.value(plane, 0, window.x0 + x, window.y0 + y));
+  }
+
+  const Raster& raster_;
+  std::vector<int> planes_;
+  std::optional<int> alpha_;
+  ColorConversion to_linear_;
+};
+
+// The mean light of the pixels, encoded.
 Encoded colors(const Raster& raster) {
-  Picture p = picture_of(raster);
-  for (Grid& g : p.rgb)
-    for (double& v : g.values)
-      v = kernels::encode(kernels::Curve::srgb, std::isnan(v) ? 0.0 : std::clamp(v, 0.0, 1.0));
-  return p.rgb;
+  const Rect& window = raster.frame().window;
+  const Reduction r = reduction_of(window);
+  const LightRows light(raster);
+  Encoded out;
+  out.fill(Grid(r.width, r.height));
+  tbb::parallel_for(0, r.height, [&](int y) {
+    std::array<std::vector<float>, 3> rgb;
+    for (int v = y * r.factor; v < std::min(window.height(), (y + 1) * r.factor); ++v) {
+      light.read(v, rgb);
+      for (std::size_t c = 0; c < 3; ++c)
+        for (int x = 0; x < window.width(); ++x)
+          out[c].at(x / r.factor, y) += static_cast<double>(rgb[c][static_cast<std::size_t>(x)]);
+    }
+    for (Grid& g : out)
+      for (int x = 0; x < r.width; ++x)
+        g.at(x, y) = kernels::encode(kernels::Curve::srgb, g.at(x, y) / area(window, r, x, y));
+  });
+  return out;
 }
 
 std::array<double, 3> color_of_id(std::uint32_t id) {
@@ -49,64 +122,59 @@ std::array<double, 3> color_of_id(std::uint32_t id) {
           0.3 + 0.7 * (h >> 8 & 255) / 255.0};
 }
 
-// The first plane: numbers in grey, ids in colours.
+// Of each pixel of the thumbnail the first of the original: numbers in grey, ids in colours.
 Encoded first_plane(const Raster& raster) {
   const Frame& f = raster.frame();
+  const Reduction r = reduction_of(f.window);
   Encoded out;
-  out.fill(Grid(f.window.width(), f.window.height()));
+  out.fill(Grid(r.width, r.height));
   const bool ids = f.planes.front().kind == PlaneKind::u32;
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (int y = f.window.y0; !ids && y < f.window.y1; ++y)
-    for (int x = f.window.x0; x < f.window.x1; ++x)
-      if (const double v = raster.value(0, 0, x, y); std::isfinite(v))
-        low = std::min(low, v), high = std::max(high, v);
-  for (int y = f.window.y0; y < f.window.y1; ++y)
-    for (int x = f.window.x0; x < f.window.x1; ++x) {
-      const double v = raster.value(0, 0, x, y),
-                   grey = high > low && std::isfinite(v) ? (v - low) / (high - low) : 0;
+  const auto value = [&](int x, int y) {
+    return raster.value(0, 0, f.window.x0 + x * r.factor, f.window.y0 + y * r.factor);
+  };
+  for (int y = 0; !ids && y < r.height; ++y)
+    for (int x = 0; x < r.width; ++x)
+      if (const double v = value(x, y); std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+  for (int y = 0; y < r.height; ++y)
+    for (int x = 0; x < r.width; ++x) {
+      const double v = value(x, y), grey = high > low && std::isfinite(v) ? (v - low) / (high - low) : 0;
       const auto c = ids ? color_of_id(static_cast<std::uint32_t>(v)) : std::array{grey, grey, grey};
-      for (std::size_t k = 0; k < 3; ++k) out[k].at(x - f.window.x0, y - f.window.y0) = c[k];
+      for (std::size_t k = 0; k < 3; ++k) out[k].at(x, y) = c[k];
     }
   return out;
 }
 
+// The largest error in each pixel of the thumbnail, so that lone ones stay visible.
 Encoded error_colors(const Raster& raster, const Raster& reference) {
+  const Rect& window = raster.frame().window;
+  const Reduction r = reduction_of(window);
   const auto map = error_map(raster, reference);
   const auto largest = std::max_element(map.begin(), map.end());
   const double scale = largest == map.end() || *largest == 0 ? 1 : static_cast<double>(*largest);
+  Grid worst(r.width, r.height);
+  for (int y = 0; y < window.height(); ++y)
+    for (int x = 0; x < window.width(); ++x) {
+      double& e = worst.at(x / r.factor, y / r.factor);
+      e = std::max(
+          e, static_cast<double>(map[static_cast<std::size_t>(y) * static_cast<std::size_t>(window.width()) +
+                                     static_cast<std::size_t>(x)]));
+    }
   Encoded out;
-  out.fill(Grid(raster.frame().window.width(), raster.frame().window.height()));
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    const double e = static_cast<double>(map[i]);
+  out.fill(Grid(r.width, r.height));
+  for (std::size_t i = 0; i < worst.values.size(); ++i) {
+    const double e = worst.values[i];
     const auto c = heat(std::isinf(e) ? 1 : std::sqrt(e / scale));  // the root shows small errors too
     for (std::size_t k = 0; k < 3; ++k) out[k].values[i] = c[k];
   }
   return out;
 }
 
-// Smaller by a whole factor: the mean of the pixels (or the largest, which keeps lone errors visible).
-Grid shrunk(const Grid& g, int factor, bool largest) {
-  Grid out((g.width + factor - 1) / factor, (g.height + factor - 1) / factor);
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x) {
-      double sum = 0, max = 0;
-      int n = 0;
-      for (int v = y * factor; v < std::min(g.height, (y + 1) * factor); ++v)
-        for (int u = x * factor; u < std::min(g.width, (x + 1) * factor); ++u, ++n)
-          sum += g.at(u, v), max = std::max(max, g.at(u, v));
-      out.at(x, y) = largest ? max : sum / n;
-    }
-  return out;
-}
-
-void save(const std::filesystem::path& path, const Encoded& rgb, bool largest) {
-  const int factor = (rgb[0].width + thumbnail_width - 1) / thumbnail_width;
-  Raster out(
-      Frame{.window = {0, 0, (rgb[0].width + factor - 1) / factor, (rgb[0].height + factor - 1) / factor},
-            .planes = {{"R"}, {"G"}, {"B"}},
-            .color_space = "srgb"});
+void save(const std::filesystem::path& path, const Encoded& rgb) {
+  Raster out(Frame{
+      .window = {0, 0, rgb[0].width, rgb[0].height}, .planes = {{"R"}, {"G"}, {"B"}}, .color_space = "srgb"});
   for (int c = 0; c < 3; ++c) {
-    const Grid g = shrunk(rgb[static_cast<std::size_t>(c)], factor, largest);
+    const Grid& g = rgb[static_cast<std::size_t>(c)];
     for (int y = 0; y < g.height; ++y)
       for (int x = 0; x < g.width; ++x) out.view().row<float>(c, 0, y)[x] = static_cast<float>(g.at(x, y));
   }
@@ -121,11 +189,13 @@ void save_pictures(const std::filesystem::path& folder, const std::string& name,
   if (!buffer.type().is_pixels()) return;
   const Raster& raster = buffer.type().raster(buffer.data());
   if (raster.frame().planes.empty() || raster.frame().window.empty()) return;
-  save(folder / (name + ".png"), no_picture(raster.frame()).empty() ? colors(raster) : first_plane(raster),
-       false);
-  if (reference != nullptr)
-    save(folder / (name + ".error.png"), error_colors(raster, reference->type().raster(reference->data())),
-         true);
+  const auto picture = [&] {
+    save(folder / (name + ".png"), no_picture(raster.frame()).empty() ? colors(raster) : first_plane(raster));
+  };
+  if (reference == nullptr) return picture();
+  tbb::parallel_invoke(picture, [&] {
+    save(folder / (name + ".error.png"), error_colors(raster, reference->type().raster(reference->data())));
+  });
 }
 
 std::string data_uri(const std::filesystem::path& png) {

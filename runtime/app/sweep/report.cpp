@@ -42,15 +42,45 @@ Json point_json(const SweepPoint& p) {
               {"counters", p.counters},
               {"pareto", p.pareto}};
   if (p.knob) out["knob"] = *p.knob;
-  if (p.own_error) out["own_error"] = json_number(*p.own_error);
+  if (p.own_error()) out["own_error"] = json_number(*p.own_error());
+  if (!p.knob && !p.own_errors.empty())
+    for (const auto& [k, v] : p.own_errors)
+      out["own_errors"].push_back({{"knob", k}, {"error", json_number(v)}});
   return out;
+}
+
+Json costs_json(const SweepCosts& c) {
+  return {{"total", c.total},         {"timed_runs", c.timed}, {"first_runs", c.first},
+          {"reference", c.reference}, {"loading", c.loading},  {"errors_and_pictures", c.judging},
+          {"journal", c.journal},     {"report", c.report}};
 }
 
 std::string fitted(const std::optional<SlopeFit>& f) {
   return f ? fmt::format("{:+.2f} (r2 {:.3f}, {} points)", f->slope, f->r2, f->points) : std::string("-");
 }
 
+// Adds the time since `began` to what the report of the sweep has cost.
+void add_report_time(Sweep& s, std::chrono::steady_clock::time_point began) {
+  const double more = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  s.costs.report += more, s.costs.total += more;
+}
+
 }  // namespace
+
+std::string costs_text(const SweepCosts& c) {
+  return fmt::format(
+      "{:.1f} s: {:.1f} s in runs (timed {:.1f}, first {:.1f}, reference {:.1f}); measuring overhead {:.1f} "
+      "% "
+      "(loading {:.2f}, errors and pictures {:.2f}, journal {:.2f}, report {:.2f} s)",
+      c.total, c.runs(), c.timed, c.first, c.reference, 100 * c.overhead(), c.loading, c.judging, c.journal,
+      c.report);
+}
+
+std::string theory_text(const KnobFit& fit, const SweepKnob& knob) {
+  const auto agrees = agrees_with_theory(fit, knob);
+  if (!agrees) return {};
+  return fmt::format("{} {} of theory", *agrees ? "within" : "outside", slope_tolerance);
+}
 
 std::string name_of(const Sweep& s, const SweepPoint& p) {
   if (p.knob)
@@ -70,12 +100,15 @@ Json to_json(const Sweep& s) {
     if (k.slope) knobs.back()["expected_slope"] = *k.slope;
   }
   for (const SweepPoint& p : s.points) points.push_back(point_json(p));
-  for (const KnobFit& f : s.fits)
+  for (const KnobFit& f : s.fits) {
     fits.push_back({{"knob", f.knob},
                     {"over_value", fit_json(f.over_value)},
                     {"over_time", fit_json(f.over_time)},
                     {"over_work", fit_json(f.over_work)},
                     {"without_effect", f.without_effect}});
+    if (const auto agrees = agrees_with_theory(f, s.knobs[f.knob]))
+      fits.back()["agrees_with_theory"] = *agrees;
+  }
   for (const SweepStep& t : s.steps)
     steps.push_back({{"point", t.point},
                      {"ms", t.time_ms},
@@ -92,8 +125,8 @@ Json to_json(const Sweep& s) {
           {"repeats", s.options.repeats},
           {"machine", s.machine},
           {"version", fmt::format("{} ({})", version, build_id())},
-          {"seconds", s.total_s},
-          {"seconds_in_runs", s.runs_s},
+          {"seconds", costs_json(s.costs)},
+          {"overhead", s.costs.overhead()},
           {"resumed", s.resumed},
           {"knobs", knobs},
           {"points", points},
@@ -111,7 +144,7 @@ std::string sweep_csv(const Sweep& s) {
     Json row = {p.knob ? s.knobs[*p.knob].address : std::string()};
     for (const std::string& v : p.values) row.push_back(v);
     for (const std::string& m : s.options.metrics) row.push_back(json_number(p.error(m)));
-    row.push_back(p.own_error ? json_number(*p.own_error) : Json(nullptr));
+    row.push_back(p.own_error() ? json_number(*p.own_error()) : Json(nullptr));
     for (const auto t : {min_of(p), median_of(p), deviation_of(p)}) row.push_back(milliseconds(t));
     row.push_back(p.times.size()), row.push_back(p.work), row.push_back(p.pareto ? 1 : 0);
     rows.push_back(std::move(row));
@@ -125,11 +158,11 @@ std::string sweep_text(const Sweep& s, std::size_t steps) {
   std::string out = fmt::format("{}, {} points, {} against {}\n", s.port, s.points.size(),
                                 s.options.metrics.front(), s.reference);
   if (!s.fits.empty()) {
-    std::vector<std::vector<std::string>> rows{{"knob", "error ~ value^", "theory", "error ~ time^"}};
+    std::vector<std::vector<std::string>> rows{{"knob", "error ~ value^", "theory", "", "error ~ time^"}};
     for (const KnobFit& f : s.fits) {
       const SweepKnob& k = s.knobs[f.knob];
       rows.push_back({k.address, f.without_effect ? "no effect here" : fitted(f.over_value),
-                      k.slope ? fmt::format("{:+.2f}", *k.slope) : "",
+                      k.slope ? fmt::format("{:+.2f}", *k.slope) : "", theory_text(f, k),
                       f.without_effect ? "" : fitted(f.over_time)});
     }
     out += "\n" + aligned(rows);
@@ -144,7 +177,7 @@ std::string sweep_text(const Sweep& s, std::size_t steps) {
     }
     out += "\n" + aligned(rows);
   }
-  return out + fmt::format("\n{:.1f} s, {:.1f} s of them in runs\n", s.total_s, s.runs_s);
+  return out + "\n" + costs_text(s.costs) + "\n";
 }
 
 Plot error_plot(const Sweep& s) {
@@ -179,11 +212,13 @@ Plot error_plot(const Sweep& s) {
   return plot;
 }
 
-std::vector<std::string> write_sweep(const Sweep& s) {
+std::vector<std::string> write_sweep(Sweep& s) {
   const std::filesystem::path folder = s.options.folder;
-  write_text(folder / "sweep.json", to_json(s).dump(1) + "\n");
-  write_text(folder / "sweep.csv", sweep_csv(s));
   write_text(folder / "sweep.html", sweep_html(s));
+  const auto began = std::chrono::steady_clock::now();
+  write_text(folder / "sweep.csv", sweep_csv(s));
+  add_report_time(s, began);
+  write_text(folder / "sweep.json", to_json(s).dump(1) + "\n");
   return {(folder / "sweep.json").string(), (folder / "sweep.csv").string(),
           (folder / "sweep.html").string()};
 }

@@ -10,6 +10,7 @@
 #include "runtime/graph/keys.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 #include <nlohmann/json.hpp>
 
@@ -36,6 +37,17 @@ class WorkObserver : public Observer {
   }
   WorkCounters counters;
 };
+
+// Calls f and adds its time to `spent`, also where it throws.
+template <class F>
+decltype(auto) timed_into(double& spent, const F& f) {
+  struct Timer {
+    ~Timer() { spent += std::chrono::duration<double>(Clock::now() - began).count(); }
+    double& spent;
+    Clock::time_point began = Clock::now();
+  } timer{spent};
+  return f();
+}
 
 // One point on its way: the graph with its settings, files already read.
 struct Candidate {
@@ -79,16 +91,21 @@ class SweepRun {
     for (Candidate& c : candidates_) sweep_.points.push_back(std::move(c.point));
     analyse(sweep_);
     sweep_.machine = fmt::format("{}, {} threads", processor(), threads());
-    sweep_.total_s = std::chrono::duration<double>(Clock::now() - began).count();
+    costs().total = std::chrono::duration<double>(Clock::now() - began).count();
     return std::move(sweep_);
   }
 
  private:
+  SweepCosts& costs() { return sweep_.costs; }
   int threads() const { return o_.threads > 0 ? o_.threads : tbb::this_task_arena::max_concurrency(); }
 
   // ----- graphs
 
   std::optional<Candidate> load(const std::vector<Setting>& settings) {
+    return timed_into(costs().loading, [&] { return loaded(settings); });
+  }
+
+  std::optional<Candidate> loaded(const std::vector<Setting>& settings) {
     LoadOptions options = o_.load;
     for (const Setting& s : settings) {
       if (s.address == "precision")
@@ -152,25 +169,26 @@ class SweepRun {
     const auto began = Clock::now();
     run_port(c.graph, c.want, nullptr);
     const auto time = Clock::now() - began;
-    sweep_.runs_s += std::chrono::duration<double>(time).count();
+    costs().timed += std::chrono::duration<double>(time).count();
     return time;
   }
 
   // ----- points
 
-  bool add_point(const std::vector<std::string>& values, std::optional<std::size_t> knob) {
+  // Where the point is found afterwards: two ways of saying the same are one point.
+  std::optional<std::size_t> add_point(const std::vector<std::string>& values,
+                                       std::optional<std::size_t> knob) {
     std::vector<Setting> settings;
     for (std::size_t k = 0; k < values.size(); ++k)
       if (!values[k].empty() && (o_.grid || knob == k))
         settings.push_back({sweep_.knobs[k].address, values[k]});
     auto c = load(settings);
-    if (!c) return false;
-    if (std::any_of(candidates_.begin(), candidates_.end(),
-                    [&](const Candidate& other) { return other.point.key == c->point.key; }))
-      return true;  // two ways of saying the same
+    if (!c) return std::nullopt;
+    for (std::size_t i = 0; i < candidates_.size(); ++i)
+      if (candidates_[i].point.key == c->point.key) return i;
     c->point.values = values, c->point.knob = knob;
     candidates_.push_back(std::move(*c));
-    return true;
+    return candidates_.size() - 1;
   }
 
   bool make_points(Candidate base) {
@@ -183,12 +201,16 @@ class SweepRun {
     if (!o_.grid) {
       base.point.values = current;
       candidates_.push_back(std::move(base));
-      for (std::size_t k = 0; k < sweep_.knobs.size(); ++k)
+      for (std::size_t k = 0; k < sweep_.knobs.size(); ++k) {
+        exact_.emplace_back();
         for (const std::string& v : sweep_.knobs[k].values) {
           auto values = current;
           values[k] = v;
-          if (!add_point(values, k)) return false;
+          const auto at = add_point(values, k);
+          if (!at) return false;
+          exact_[k] = *at;
         }
+      }
       return true;
     }
     for (std::size_t i = 0; i < all; ++i) {
@@ -230,8 +252,10 @@ class SweepRun {
   const Buffer& reference() {
     if (!reference_) {
       say("the reference");
-      reference_ = run_port(reference_graph_->graph, reference_graph_->want, nullptr);
-      save_pictures(picture_folder(), "reference", reference_, nullptr);
+      reference_ = timed_into(costs().reference, [&] {
+        return run_port(reference_graph_->graph, reference_graph_->want, nullptr);
+      });
+      timed_into(costs().judging, [&] { save_pictures(picture_folder(), "reference", reference_, nullptr); });
     }
     return reference_;
   }
@@ -254,8 +278,10 @@ class SweepRun {
 
   void recall(SweepPoint& p, const Json& e) {
     if (e.contains("ns")) return p.times.push_back(std::chrono::nanoseconds(e["ns"].get<std::int64_t>()));
+    if (e.contains("of_knob"))
+      return void(p.own_errors[e["of_knob"].get<std::size_t>()] = json_double(e["own"]));
     for (const auto& [metric, v] : e.at("errors").items()) p.errors[metric] = json_double(v);
-    if (e.contains("own")) p.own_error = json_double(e["own"]);
+    if (e.contains("own") && p.knob) p.own_errors[*p.knob] = json_double(e["own"]);
     for (const auto& [name, n] : e.at("counters").items()) p.counters[name] = n.get<std::uint64_t>();
     p.work = e.at("work").get<std::uint64_t>();
     measured_.insert(p.key);
@@ -264,13 +290,14 @@ class SweepRun {
   // ----- errors and counters: one run of each point
 
   void first_runs() {
-    if (o_.grid) {
-      for (Candidate& c : candidates_)
-        if (!measured_.contains(c.point.key)) measure_point(c, nullptr);
-      return;
-    }
-    if (!measured_.contains(candidates_.front().point.key)) measure_point(candidates_.front(), nullptr);
-    for (std::size_t k = 0; k < sweep_.knobs.size(); ++k) measure_knob(k);
+    for (Candidate& c : candidates_)
+      if ((o_.grid || !c.point.knob) && !measured_.contains(c.point.key)) {
+        Buffer buffer = run_observed(c);
+        finish_measure(c, buffer, nullptr);
+        if (!c.point.knob && !o_.grid) as_it_is_ = std::move(buffer);
+      }
+    for (std::size_t k = 0; k < sweep_.knobs.size() && !o_.grid; ++k) measure_knob(k);
+    as_it_is_ = {};
   }
 
   // The most exact value comes first: the others are measured against it.
@@ -278,55 +305,62 @@ class SweepRun {
     std::vector<Candidate*> mine;
     for (Candidate& c : candidates_)
       if (c.point.knob == k && !measured_.contains(c.point.key)) mine.push_back(&c);
-    if (mine.empty()) return;
-    const std::string& best = sweep_.knobs[k].values.back();
-    Candidate& exact = exact_point(k, best);
-    const Buffer own = run_observed(exact);
-    for (Candidate* c : mine) {
-      const Buffer buffer = c == &exact ? own : run_observed(*c);
-      finish_measure(*c, buffer, &own);
-    }
+    SweepPoint& base = candidates_.front().point;
+    if (mine.empty() && base.own_error(k)) return;
+    Candidate& exact = candidates_[exact_[k]];
+    const Buffer own = &exact == &candidates_.front() ? as_it_is() : run_observed(exact);
+    for (Candidate* c : mine) finish_measure(*c, c == &exact ? own : run_observed(*c), &own);
+    if (base.own_error(k)) return;
+    const Buffer& now = as_it_is();
+    timed_into(costs().judging, [&] { measure_own(base, k, now, own); });
+    if (const auto e = base.own_error(k))
+      note({{"point", base.key}, {"of_knob", k}, {"own", json_number(*e)}});
   }
 
-  Candidate& exact_point(std::size_t k, const std::string& best) {
-    for (Candidate& c : candidates_)
-      if (c.point.knob == k && c.point.values[k] == best) return c;
-    return candidates_.front();  // the graph has the most exact value already
+  // The buffer of the graph as it is, which every knob is compared with.
+  const Buffer& as_it_is() {
+    if (!as_it_is_) as_it_is_ = run_observed(candidates_.front());
+    return as_it_is_;
   }
-
-  void measure_point(Candidate& c, const Buffer* own) { finish_measure(c, run_observed(c), own); }
 
   Buffer run_observed(Candidate& c) {
     say(describe(c.point));
     WorkObserver work;
-    const auto began = Clock::now();
-    Buffer b = run_port(c.graph, c.want, &work);
-    sweep_.runs_s += std::chrono::duration<double>(Clock::now() - began).count();
+    Buffer b = timed_into(costs().first, [&] { return run_port(c.graph, c.want, &work); });
     c.point.counters = std::move(work.counters);
     c.point.work = 0;
     for (const auto& [name, n] : c.point.counters) c.point.work += n;
     return b;
   }
 
+  // Errors and pictures side by side: no run is timed meanwhile.
   void finish_measure(Candidate& c, const Buffer& buffer, const Buffer* own) {
     SweepPoint& p = c.point;
-    const Measured m = measure(buffer, reference(), o_.metrics);
+    const Buffer& exact = reference();
+    Measured m;
+    timed_into(costs().judging, [&] {
+      tbb::parallel_invoke([&] { m = measure(buffer, exact, o_.metrics); },
+                           [&] {
+                             if (own != nullptr) measure_own(p, *p.knob, buffer, *own);
+                           },
+                           [&] { save_pictures(picture_folder(), p.key, buffer, &exact); });
+    });
     if (!m.difference.mismatch.empty())
       throw NodeError("not_comparable", fmt::format("{} is not measured against the reference: {}",
                                                     describe(p), m.difference.mismatch));
     p.errors = m.values;
-    if (own != nullptr) {
-      const std::vector<std::string> first{o_.metrics.front()};
-      const Measured mine = measure(buffer, *own, first);
-      if (mine.difference.mismatch.empty()) p.own_error = mine.values.at(first.front());
-    }
-    save_pictures(picture_folder(), p.key, buffer, &reference());
     Json entry = {{"point", p.key}, {"errors", Json::object()}, {"counters", p.counters}, {"work", p.work}};
     for (const auto& [metric, v] : p.errors) entry["errors"][metric] = json_number(v);
-    if (p.own_error) entry["own"] = json_number(*p.own_error);
-    journal_->append(entry);
+    if (p.own_error()) entry["own"] = json_number(*p.own_error());
+    note(entry);
     measured_.insert(p.key);
     ++done_;
+  }
+
+  void measure_own(SweepPoint& p, std::size_t knob, const Buffer& buffer, const Buffer& exact) {
+    const std::vector<std::string> first{o_.metrics.front()};
+    const Measured m = measure(buffer, exact, first);
+    if (m.difference.mismatch.empty()) p.own_errors[knob] = m.values.at(first.front());
   }
 
   // ----- times: in turns, so that a slow moment of the machine falls on all points alike
@@ -338,10 +372,14 @@ class SweepRun {
         if (o_.cancel != nullptr && o_.cancel->cancelled()) throw Cancelled();
         const auto time = timed_run(c);
         c.point.times.push_back(time);
-        journal_->append({{"point", c.point.key}, {"ns", time.count()}});
+        note({{"point", c.point.key}, {"ns", time.count()}});
         ++done_;
         say(fmt::format("round {} of {}: {}", round + 1, o_.repeats, describe(c.point)));
       }
+  }
+
+  void note(const Json& entry) {
+    timed_into(costs().journal, [&] { journal_->append(entry); });
   }
 
   std::string describe(const SweepPoint& p) const {
@@ -362,9 +400,10 @@ class SweepRun {
   Diagnostics& problems_;
   Sweep sweep_;
   std::vector<Candidate> candidates_;
+  std::vector<std::size_t> exact_;  // by knob: the candidate with its most exact value
   std::optional<Candidate> reference_graph_;
   std::string reference_key_;
-  Buffer reference_;
+  Buffer reference_, as_it_is_;
   std::map<Digest, Buffer> files_;  // outputs of io nodes
   std::optional<SweepJournal> journal_;
   std::set<std::string> measured_;  // keys of points whose error is known

@@ -51,13 +51,20 @@ struct SweepPoint {
   std::vector<std::string> values;  // one a knob
   std::optional<std::size_t> knob;  // one at a time: the one that was turned; none for the graph as it is
   std::map<std::string, double, std::less<>> errors;  // against the reference, by metric
-  std::optional<double> own_error;  // first metric, against this knob alone at its most exact
+  // First metric, by knob: against the same graph with that knob alone at its most exact value. Of the knob that was
+  // turned; of the graph as it is, every knob's.
+  std::map<std::size_t, double> own_errors;
   WorkCounters counters;
   std::uint64_t work = 0;  // vertices, triangles, samples and the like that all nodes went through
   std::vector<std::chrono::nanoseconds> times;
   bool pareto = false;  // no other point is at once faster and nearer the reference
 
   double error(const std::string& metric) const { return errors.at(metric); }
+  std::optional<double> own_error(std::size_t of_knob) const {
+    const auto at = own_errors.find(of_knob);
+    return at == own_errors.end() ? std::nullopt : std::optional(at->second);
+  }
+  std::optional<double> own_error() const { return knob ? own_error(*knob) : std::nullopt; }
 };
 
 // A straight line through log(error) over log(x), by least squares.
@@ -72,7 +79,7 @@ struct SlopeFit {
 struct KnobFit {
   std::size_t knob = 0;
   std::optional<SlopeFit> over_value, over_time, over_work;
-  bool without_effect = false;  // the cheapest value gave the same bytes as the most exact one
+  bool without_effect = false;  // no value is off from the most exact one
 };
 
 // From the graph as it is to one turn of one knob.
@@ -83,15 +90,32 @@ struct SweepStep {
   double halvings_per_ms = 0;  // of the error, for more accurate steps; infinite where they cost nothing
 };
 
+// Where the wall-clock time of a sweep went, in seconds. Running the graph is what is measured; everything else is what
+// measuring adds.
+struct SweepCosts {
+  double timed = 0;      // runs whose time counts
+  double first = 0;      // the run of each setting that gives its error and counters, and warms up
+  double reference = 0;  // the run of the reference
+  double loading = 0;    // graphs read, checked and given their settings; files of io nodes
+  double judging = 0;    // errors, thumbnails and error maps
+  double journal = 0;
+  double report = 0;  // the page, CSV and JSON; write_sweep() adds it
+  double total = 0;   // of the sweep, its report included
+
+  double runs() const { return timed + first + reference; }
+  // The measuring overhead: the share of the whole time in which no graph ran.
+  double overhead() const { return total > 0 ? 1 - runs() / total : 0; }
+};
+
 struct Sweep {
   SweepOptions options;
   std::string title, port, kind, reference;  // what was measured, its kind of buffer, and against what
   std::vector<SweepKnob> knobs;
   std::vector<SweepPoint> points;  // one at a time, the first is the graph as it is
   std::vector<KnobFit> fits;
-  std::vector<SweepStep> steps;    // the best buys first
-  std::size_t resumed = 0;         // points taken from an earlier run
-  double total_s = 0, runs_s = 0;  // of the sweep, and of the runs inside
+  std::vector<SweepStep> steps;  // the best buys first
+  std::size_t resumed = 0;       // points taken from an earlier run
+  SweepCosts costs;              // of this run of it, not of the one that it resumes
   std::string machine;
 };
 
@@ -105,7 +129,7 @@ std::vector<SweepKnob> sweep_knobs(Session&, const Graph&, PortRef want, const S
 // Timed is what run_graph does from the plan to the finished buffer, with no cache and nobody listening. Not
 // timed: reading and checking the graph, and its io nodes: files are read once and stand in the graphs as
 // literals. One run of each point is made first, for its error and counters; then `repeats` rounds go through
-// all points in turn.
+// all points in turn. Errors are measured once a point, and between runs, never beside one.
 std::optional<Sweep> run_sweep(Session&, const SweepOptions&, Diagnostics& problems);
 
 std::chrono::nanoseconds min_of(const SweepPoint&);
