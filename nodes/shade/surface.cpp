@@ -49,10 +49,9 @@ struct Outputs {
   Tiled<Image> color;
 };
 
-// ----- preparation
 constexpr std::string_view highlights_name = "highlights", ambient_name = "ambient_light",
                            attenuation_name = "attenuation", sides_name = "two_sided_lighting",
-                           shadows_name = "shadows";
+                           shadows_name = "shadows", supersampling_name = "supersampling";
 
 // What a pixel needs in the precision of the node.
 template <class R>
@@ -65,6 +64,7 @@ struct State {
   std::variant<Shader<float>, Shader<double>> shader;
   Interpolation interpolation;
   bool once_a_pixel;
+  bool once_a_face = false;  // pixels all of whose samples show one face are lit at their first sample
   Ref<Mesh> mesh;
   int id = -1;
   std::array<RealPlane, 3> normal{}, position{}, albedo{};
@@ -121,7 +121,6 @@ bool needs_position(const std::variant<Shader<float>, Shader<double>>& shader) {
   return std::visit([](const auto& sh) { return sh.scene.needs_positions(); }, shader);
 }
 
-// ----- effects
 // The points that are lit, were every pixel to show one face.
 std::uint64_t points_of(const Inputs& in, const Params& p) {
   const Frame& f = in.points.frame();
@@ -158,6 +157,17 @@ Verdict two_sided_lighting(const Inputs& in, const Params& p, const Context& ctx
     if (face == triangles.size()) return off_exact("no face turns its back to the camera", points);
     return on(fmt::format("face {} turns its back to the camera", face), points);
   });
+}
+
+// What is lit depends on the face alone: its light was found once, before the pixels, and nothing scales it by place.
+Verdict supersampling(const Inputs& in, const Params& p, const Context&) {
+  const std::uint64_t points = points_of(in, p);
+  if (in.points.frame().samples() == 1) return off_exact("one sample a pixel");
+  if (p.rate == Rate::pixel) return off_user("the graph asks for light once a pixel and face");
+  if (p.interpolation != Interpolation::flat) return on("light changes over a face", points);
+  if (in.albedo && !in.albedo->frame().white.holds) return on("the albedo changes over a face", points);
+  if (in.visibility && !in.visibility->frame().planes.empty()) return on("shadows change over a face", points);
+  return off_exact("a face has one colour: so has a pixel whose samples all show it", points);
 }
 
 Verdict shadows(const Inputs& in, const Params& p, const Context&) {
@@ -210,6 +220,7 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   ctx.real([&]<class R>() { s.shader = make_shader<R>(in, p, ctx); });
   const Frame& from = in.points.frame();
   s.once_a_pixel = p.rate == Rate::pixel && from.samples() > 1;
+  s.once_a_face = !s.once_a_pixel && from.samples() > 1 && !ctx.simulates(supersampling_name);
   s.id = in.points.read("id");
   if (p.interpolation == Interpolation::phong) {
     if (!from.find("N.x"))
@@ -237,7 +248,6 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   return {std::move(s), {std::move(color)}};
 }
 
-// ----- tiles
 bool has_highlights(const State& s) {
   return std::visit([](const auto& shader) { return shader.scene.highlights; }, s.shader);
 }
@@ -304,6 +314,7 @@ class Filler {
     if (sizeof(R) == 8 || !phong) copies_ = arena.take<R>(numbers_ * samples_ * n_);
     row_.resize(numbers_ * samples_);
     id_.resize(samples_);
+    if (s.once_a_face) differs_ = arena.take<std::uint32_t>(n_);
     if (!s.once_a_pixel) return;
     left_ = arena.take<std::uint32_t>(samples_ * n_);
     face_ = arena.take<std::uint32_t>(n_);
@@ -331,6 +342,7 @@ class Filler {
   void find_rows(int y) {
     for (std::size_t k = 0; k < samples_; ++k)
       id_[k] = points_.row<const std::uint32_t>(s_.id, static_cast<int>(k), y);
+    if (s_.once_a_face) find_mixed(id_, n_, differs_, mixed_);
     std::size_t number = 0;
     const auto add = [&](const Tile& tile, std::span<const RealPlane> planes) {
       for (const RealPlane plane : planes) {
@@ -347,7 +359,7 @@ class Filler {
       for (std::size_t k = 0; k < samples_; ++k) {
         std::array<R*, 6> out{};
         for (std::size_t i = 0; i < lit_numbers_; ++i) row_[i * samples_ + k] = out[i] = copy(i, k).data();
-        find_face_light(static_cast<int>(k), y, out);
+        for (const Run& run : runs_of(k)) find_face_light(static_cast<int>(k), y, run, out);
       }
       number = lit_numbers_;
     }
@@ -356,10 +368,12 @@ class Filler {
   }
 
   // Flat and Gouraud: what the faces received; of each light that may be hidden, as much as reaches the point.
-  void find_face_light(int k, int y, const std::array<R*, 6>& out) {
-    const auto find = [&](const kernels::FaceLight<R>& light, const std::array<R*, 6>& to) {
-      kernels::face_light_row(light, positions_, id_[static_cast<std::size_t>(k)], k, points_.rect().x0, y,
-                              n_, to);
+  void find_face_light(int k, int y, const Run& run, const std::array<R*, 6>& out) {
+    const auto find = [&](const kernels::FaceLight<R>& light, std::array<R*, 6> to) {
+      for (R*& row : to)
+        if (row != nullptr) row += run.first;
+      kernels::face_light_row(light, positions_, id_[static_cast<std::size_t>(k)] + run.first, k,
+                              points_.rect().x0 + static_cast<int>(run.first), y, run.second - run.first, to);
     };
     if (s_.reach.empty()) return find(faces_[0], out);
     for (R* to : out)
@@ -375,20 +389,36 @@ class Filler {
     }
   }
 
-  kernels::ColorRows<R> out_rows(std::size_t sample, int y) const {
+  // The pixels at which a sample is lit.
+  std::span<const Run> runs_of(std::size_t sample) const {
+    if (sample > 0 && s_.once_a_face) return mixed_;
+    return {&whole_, 1};
+  }
+
+  kernels::ColorRows<R> out_rows(std::size_t sample, int y, std::size_t x = 0) const {
     kernels::ColorRows<R> rows;
     for (std::size_t k = 0; k < 4; ++k)
-      rows.plane[k] = out_row<R>(out_, static_cast<int>(k), static_cast<int>(sample), y);
+      if (R* row = out_row<R>(out_, static_cast<int>(k), static_cast<int>(sample), y))
+        rows.plane[k] = row + x;
     return rows;
   }
 
   void shade_samples(int y) {
     for (std::size_t k = 0; k < samples_; ++k) {
-      const auto number = [&](std::size_t i) { return row_[i * samples_ + k]; };
-      const kernels::ColorRows<R> out = out_rows(k, y);
-      shade_row(shader_.scene, point_row<R>(s_, id_[k], number, reach_), n_, scratch_, out);
-      fade_row(shader_.scene, id_[k], n_, out);
+      if (k > 0 && s_.once_a_face) copy_first_sample(k, y);
+      for (const auto& [begin, end] : runs_of(k)) {
+        const auto number = [&](std::size_t i) { return row_[i * samples_ + k] + begin; };
+        const kernels::ColorRows<R> out = out_rows(k, y, begin);
+        shade_row(shader_.scene, point_row<R>(s_, id_[k] + begin, number, reach_), end - begin, scratch_, out);
+        fade_row(shader_.scene, id_[k] + begin, end - begin, out);
+      }
     }
+  }
+
+  void copy_first_sample(std::size_t k, int y) {
+    const kernels::ColorRows<R> from = out_rows(0, y), to = out_rows(k, y);
+    for (std::size_t c = 0; c < 4; ++c)
+      if (to.plane[c] != nullptr) std::copy_n(from.plane[c], n_, to.plane[c]);
   }
 
   // Once for each face a pixel sees, at the mean of its samples there; all of them get that colour.
@@ -423,7 +453,9 @@ class Filler {
   RowScratch<R> scratch_;
   std::vector<std::uint8_t> present_;
   std::span<R> copies_;
-  std::span<std::uint32_t> left_, face_;
+  std::span<std::uint32_t> left_, face_, differs_;
+  const Run whole_{0, n_};
+  std::vector<Run> mixed_;
   std::vector<R*> mean_;
   kernels::ColorRows<R> color_;
 };
@@ -471,6 +503,9 @@ NodeType nodes::shade_surface() {
       .effect(ambient_name, ambient_light, "Light from everywhere is added.")
       .effect(attenuation_name, attenuation, "The light of point lights is divided by its attenuation.")
       .effect(sides_name, two_sided_lighting, "Normals of faces that turn their back are turned around.")
+      .effect(
+          supersampling_name, supersampling,
+          "Light is found for every sample, also where all samples of a pixel show one face of one colour.")
       .effect(shadows_name, shadows, "Light does not reach what something else stands in front of.")
       .output(
           "color", &Outputs::color,

@@ -6,10 +6,13 @@
 #include "nodes/kernels/shading_scene.h"
 #include "nodes/kernels/simd/lighting.h"
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace frustum::shading {
@@ -24,6 +27,27 @@ template <std::floating_point R>
 using Scene = kernels::ShadingScene<R>;
 
 // ----- rows
+
+/// Elements [first, second) of a row.
+using Run = std::pair<std::size_t, std::size_t>;
+
+/// Runs of pixels whose samples do not all show one face (id: a row of n for each sample), joined over gaps too short
+/// to be worth a row of vectors of their own. `differs` is working memory for n.
+inline void find_mixed(std::span<const std::uint32_t* const> id, std::size_t n,
+                       std::span<std::uint32_t> differs, std::vector<Run>& runs) {
+  constexpr std::size_t gap = 16;
+  std::fill(differs.begin(), differs.end(), 0u);
+  for (std::size_t k = 1; k < id.size(); ++k)
+    for (std::size_t x = 0; x < n; ++x) differs[x] |= id[k][x] ^ id[0][x];
+  runs.clear();
+  for (std::size_t x = 0; x < n; ++x) {
+    if (differs[x] == 0) continue;
+    if (!runs.empty() && x < runs.back().second + gap)
+      runs.back().second = x + 1;
+    else
+      runs.emplace_back(x, x + 1);
+  }
+}
 
 /// Light by rows for float goes to the vector kernels, for double to their scalar twins.
 template <std::floating_point R>

@@ -15,6 +15,7 @@ namespace frustum {
 namespace {
 
 constexpr const char* format = "frustum.sweep_journal/1";
+constexpr std::chrono::seconds sync_interval{5};
 
 [[noreturn]] void cannot_write(const std::filesystem::path& file) {
   throw WorldError("cannot_write_file",
@@ -66,7 +67,7 @@ void SweepJournal::append(const Json& entry) {
   const std::string line = entry.dump() + "\n";
   if (::write(descriptor_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
     cannot_write(file_);
-  if (const auto now = std::chrono::steady_clock::now(); now - synced_ >= std::chrono::seconds(1)) {
+  if (const auto now = std::chrono::steady_clock::now(); now - synced_ >= sync_interval) {
     if (::fdatasync(descriptor_) != 0) cannot_write(file_);
     synced_ = now;
   }

@@ -22,8 +22,8 @@ class SweepJournal {
 
   const std::vector<Json>& entries() const { return entries_; }
 
-  // One line in one write: when it returns, the line survives the end of the program, and the end of power about a
-  // second later (waiting for the disk at each line was 1.7 % of a sweep).
+  // One line in one write: when it returns, the line survives the end of the program, and some seconds later that of
+  // the machine (waiting for the disk at each line was 1.7 % of a sweep).
   void append(const Json& entry);
 
  private:
