@@ -6,6 +6,7 @@
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/pattern.h"
 #include "runtime/buffers/screen_view.h"
+#include "runtime/buffers/transparency.h"
 #include "runtime/core/node_type.h"
 
 namespace frustum {
@@ -38,7 +39,29 @@ Filler<R> make_filler(const Inputs& in, Rect window, Context& ctx) {
   return {std::move(view), std::move(pattern), std::move(rasterizer)};
 }
 
-void report(const kernels::TriangleBins& bins, Context& ctx) {
+constexpr std::string_view transparency_name = "transparency",
+                           one_is_kept =
+                               "only the nearest face is kept at a sample; visibility.abuffer keeps all";
+
+// The first face through which others show; null where all are opaque.
+std::optional<std::size_t> see_through(const Mesh& mesh) {
+  const std::vector<std::uint8_t> opaque = opaque_faces(mesh);
+  if (opaque.empty()) return mesh.faces() == 0 ? std::nullopt : std::optional<std::size_t>(0);
+  const auto at = std::find(opaque.begin(), opaque.end(), 0);
+  return at == opaque.end() ? std::nullopt : std::optional<std::size_t>(at - opaque.begin());
+}
+
+Verdict transparency(const Inputs& in, const Params&, const Context&) {
+  if (const auto face = see_through(*in.mesh))
+    return absent(fmt::format("face {} is not opaque, and {}", *face, one_is_kept));
+  return off_exact("every face is opaque");
+}
+
+void report(const kernels::TriangleBins& bins, const Mesh& mesh, Context& ctx) {
+  if (const auto face = see_through(mesh))
+    ctx.warn(
+        "nothing_shows_through",
+        fmt::format("face {} is not opaque, but what lies behind it is left out: {}", *face, one_is_kept));
   ctx.count("triangle_bin_pairs", bins.entries.size());
   ctx.count("triangles_without_area", bins.without_area);
   ctx.count("triangles_out_of_range", bins.out_of_range);
@@ -53,7 +76,7 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params&, Context& ctx) 
   const Rect window = picture_window(*in.mesh);
   return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
     Filler<R> filler = make_filler<R>(in, window, ctx);
-    report(filler.rasterizer.bins(), ctx);
+    report(filler.rasterizer.bins(), *in.mesh, ctx);
     Frame visibility = visibility_frame<R>(window, filler.pattern);
     Frame depth = depth_frame<R>(window, filler.pattern);
     return {std::move(filler), {std::move(visibility), std::move(depth)}};
@@ -83,6 +106,7 @@ NodeType nodes::rasterize_triangles() {
              "Triangles of either winding; samples of a closed mesh are covered exactly once.",
              {.space = Space::screen})
       .input("pattern", &Inputs::pattern, "Where a pixel's samples lie; left out: one sample in its middle.")
+      .effect(transparency_name, transparency, "What lies behind shines through faces that are not opaque.")
       .output("visibility", &Outputs::visibility,
               "The face and the depth at each sample; ties go to the lowest source.")
       .output("depth", &Outputs::depth, "The depth alone; where nothing is seen, that of the far plane.");

@@ -69,6 +69,8 @@ struct State {
   int id = -1;
   std::array<RealPlane, 3> normal{}, position{}, albedo{};
   std::vector<RealPlane> reach{};  // by source; empty: no light is hidden from anything
+  RealPlane alpha{};               // of the albedo; unset: opaque
+  bool straight_albedo = false;    // its colours are not multiplied by it
 };
 
 LitScene lit_scene(const Inputs& in) {
@@ -91,29 +93,27 @@ bool some_hidden(const Inputs& in, const Context& ctx) {
   return in.visibility && !in.visibility->frame().planes.empty() && ctx.simulates(shadows_name);
 }
 
+// A mesh without faces has nothing that needs normals.
+Interpolation interpolation_of(const Inputs& in, const Params& p) {
+  return in.mesh->faces() == 0 ? Interpolation::flat : p.interpolation;
+}
+
 template <class R>
 Shader<R> make_shader(const Inputs& in, const Params& p, const Context& ctx) {
   const ShadingEffects asked = effects_asked(in, p, ctx);
   Shader<R> shader{make_shading_scene<R>(lit_scene(in), camera_of(in), p.two_sided, asked), {}};
   Scene<R>& s = shader.scene;
+  if (in.mesh->faces() == 0) {
+    shader.lit.emplace_back();
+    return shader;
+  }
   s.opacity = opacities_of<R>(*in.mesh);
   if (asked.all_sides) s.side.assign(in.mesh->faces(), R(1));
   if (std::any_of(s.surfaces.begin(), s.surfaces.end(), [](const auto& of) { return of.two_sided; }))
     s.side = sides_of_faces(s, *in.mesh, ctx);
-  if (p.interpolation == Interpolation::phong) return shader;
-  const auto light = [&](const Scene<R>& by) {
-    return p.interpolation == Interpolation::flat ? light_faces(by, *in.mesh, ctx)
-                                                  : light_vertices(by, *in.mesh, ctx);
-  };
-  if (!some_hidden(in, ctx)) {
-    shader.lit.push_back(light(s));
-    return shader;
-  }
-  Scene<R> one = s;
-  for (const auto& source : s.lights) {
-    one.lights = {source};
-    shader.lit.push_back(light(one));
-  }
+  if (p.interpolation != Interpolation::phong)
+    shader.lit =
+        light_by_source(s, *in.mesh, p.interpolation == Interpolation::flat, some_hidden(in, ctx), ctx);
   return shader;
 }
 
@@ -139,24 +139,7 @@ Verdict attenuation(const Inputs& in, const Params& p, const Context&) {
 }
 
 Verdict two_sided_lighting(const Inputs& in, const Params& p, const Context& ctx) {
-  const std::uint64_t points = points_of(in, p);
-  const LitScene scene = lit_scene(in);
-  if (!p.two_sided && !scene.used([](const Material& m) { return m.two_sided; }))
-    return off_exact("no face has a material with two sides", points);
-  const Camera* camera = camera_of(in);
-  if (camera == nullptr) return on("a material has two sides", points);
-  return ctx.real([&]<class R>() {
-    const Ref<Column> world = world_positions<R>(*in.mesh);
-    const auto q = world->template values<glm::vec<3, R>>();
-    const auto triangles = in.mesh->triangles();
-    const Triple<R> eye = eye_of<R>(*camera);
-    const std::size_t face = kernels::first_where(triangles.size(), [&](std::size_t f) {
-      const glm::uvec3& t = triangles[f];
-      return kernels::seen_side(q[t[0]], q[t[1]], q[t[2]], eye) < R(0);
-    });
-    if (face == triangles.size()) return off_exact("no face turns its back to the camera", points);
-    return on(fmt::format("face {} turns its back to the camera", face), points);
-  });
+  return needs_sides(lit_scene(in), p.two_sided, camera_of(in), points_of(in, p), ctx);
 }
 
 // What is lit depends on the face alone: its light was found once, before the pixels, and nothing scales it by place.
@@ -166,7 +149,8 @@ Verdict supersampling(const Inputs& in, const Params& p, const Context&) {
   if (p.rate == Rate::pixel) return off_user("the graph asks for light once a pixel and face");
   if (p.interpolation != Interpolation::flat) return on("light changes over a face", points);
   if (in.albedo && !in.albedo->frame().white.holds) return on("the albedo changes over a face", points);
-  if (in.visibility && !in.visibility->frame().planes.empty()) return on("shadows change over a face", points);
+  if (in.visibility && !in.visibility->frame().planes.empty())
+    return on("shadows change over a face", points);
   return off_exact("a face has one colour: so has a pixel whose samples all show it", points);
 }
 
@@ -177,13 +161,7 @@ Verdict shadows(const Inputs& in, const Params& p, const Context&) {
     if (planes.empty()) return off_exact("'visibility' hides no light from anything", points);
     return on(fmt::format("'visibility' may hide {} sources of light", planes.size()), points);
   }
-  const Mesh& mesh = *in.mesh;
-  const bool own = mesh.find("world") == nullptr && mesh.space() == Space::world;
-  const Column* column = mesh.find(own ? "position" : "world");
-  if (column == nullptr || (column->name() == "position" && !own) || column->width() != 3)
-    return needs_shadows(lit_scene(in), {});
-  const Ref<Column> world = mesh.real<double>(column->name());
-  return needs_shadows(lit_scene(in), world->values<glm::dvec3>());
+  return needs_shadows(lit_scene(in));
 }
 
 // A raster that goes with the points, pixel by pixel.
@@ -193,36 +171,18 @@ void require_same_shape(const Frame& points, const Frame& other, std::string_vie
                     at_input(input));
 }
 
-std::vector<RealPlane> read_reach(const Inputs& in, std::size_t sources, const Context& ctx) {
-  const Frame& f = in.visibility->frame();
-  require_same_shape(in.points.frame(), f, "visibility");
-  std::vector<RealPlane> reach(sources);
-  std::size_t found = 0;
-  for (std::size_t i = 0; i < sources; ++i) {
-    if (!f.find(visibility_plane(i))) continue;
-    reach[i] = read_real(*in.visibility, visibility_plane(i), ctx.precision), ++found;
-  }
-  if (found != f.planes.size())
-    throw NodeError(
-        "other_lights",
-        fmt::format("'visibility' has {} planes, of which {} are of one of the {} sources of light",
-                    f.planes.size(), found, sources),
-        at_input("visibility"));
-  return reach;
-}
-
 std::size_t sources_of(const State& s) {
   return std::visit([](const auto& shader) { return shader.scene.lights.size(); }, s.shader);
 }
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
-  State s{.shader = {}, .interpolation = p.interpolation, .once_a_pixel = false, .mesh = in.mesh};
+  State s{.shader = {}, .interpolation = interpolation_of(in, p), .once_a_pixel = false, .mesh = in.mesh};
   ctx.real([&]<class R>() { s.shader = make_shader<R>(in, p, ctx); });
   const Frame& from = in.points.frame();
   s.once_a_pixel = p.rate == Rate::pixel && from.samples() > 1;
   s.once_a_face = !s.once_a_pixel && from.samples() > 1 && !ctx.simulates(supersampling_name);
   s.id = in.points.read("id");
-  if (p.interpolation == Interpolation::phong) {
+  if (s.interpolation == Interpolation::phong) {
     if (!from.find("N.x"))
       throw NodeError("missing_normals",
                       "the points have no normals: give the mesh some, or use interpolation \"flat\"",
@@ -237,8 +197,14 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
     require_same_shape(from, in.albedo->frame(), "albedo");
     s.albedo = {read_real(*in.albedo, "R", ctx.precision), read_real(*in.albedo, "G", ctx.precision),
                 read_real(*in.albedo, "B", ctx.precision)};
+    const Frame& a = in.albedo->frame();
+    if (a.find("A")) s.alpha = read_real(*in.albedo, "A", ctx.precision);
+    s.straight_albedo = a.alpha == Alpha::straight;
   }
-  if (some_hidden(in, ctx)) s.reach = read_reach(in, sources_of(s), ctx);
+  if (some_hidden(in, ctx)) {
+    require_same_shape(from, in.visibility->frame(), "visibility");
+    s.reach = read_visible_lights(*in.visibility, sources_of(s), ctx.precision);
+  }
   const PlaneKind kind = real_kind(ctx.precision);
   Frame color{.window = from.window,
               .pattern = from.pattern,
@@ -253,7 +219,7 @@ bool has_highlights(const State& s) {
 }
 
 // Numbers come in threes: what is lit (normal and, where needed, position; or diffuse and, where a surface has a
-// highlight, specular light), then albedo; at last, for points that are lit here, one for each light that may be hidden.
+// highlight, specular light), then albedo and its opacity; at last, for points that are lit here, one for each light that may be hidden.
 //   reach  by source; keeps what the row points to
 template <class R>
 PointRow<R> point_row(const State& s, const std::uint32_t* id, const auto& number,
@@ -272,6 +238,7 @@ PointRow<R> point_row(const State& s, const std::uint32_t* id, const auto& numbe
     if (has_highlights(s)) row.received.specular = three();
   }
   if (s.albedo[0]) row.albedo = three();
+  if (s.alpha) ++at;
   if (s.interpolation != Interpolation::phong) return row;
   reach.assign(s.reach.size(), nullptr);
   for (std::size_t i = 0; i < reach.size(); ++i)
@@ -305,7 +272,10 @@ class Filler {
     scratch_.present = &present_;
     const bool phong = s.interpolation == Interpolation::phong;
     lit_numbers_ = (phong ? static_cast<bool>(s.position[0]) : highlights) ? 6 : 3;
-    numbers_ = lit_numbers_ + (s.albedo[0] ? 3u : 0u);
+    alpha_ = lit_numbers_ + (s.albedo[0] ? 3u : 0u);
+    numbers_ = alpha_ + (s.alpha ? 1u : 0u);
+    for (auto& plane : straight_)
+      if (s.alpha) plane = row();
     for (const LitFaces<R>& lit : shader_.lit) faces_.push_back(lit.view(*s.mesh));
     if (phong)
       for (const RealPlane& plane : s.reach) numbers_ += plane ? 1 : 0;
@@ -364,7 +334,17 @@ class Filler {
       number = lit_numbers_;
     }
     if (s_.albedo[0]) add(albedo_, s_.albedo);
+    if (s_.alpha) add(albedo_, std::span(&s_.alpha, 1));
     if (s_.interpolation == Interpolation::phong) add(visibility_, s_.reach);
+  }
+
+  const R* alpha_row(std::size_t sample) const { return row_[alpha_ * samples_ + sample]; }
+
+  void straighten(const R* alpha, PointRow<R>& row) const {
+    if (s_.alpha && !s_.straight_albedo) straighten_row(row.id, alpha, n_, straight_, row.albedo);
+  }
+  void cover(std::size_t sample, int y) const {
+    if (s_.alpha) cover_row(id_[sample], alpha_row(sample), n_, out_rows(sample, y));
   }
 
   // Flat and Gouraud: what the faces received; of each light that may be hidden, as much as reaches the point.
@@ -409,9 +389,12 @@ class Filler {
       for (const auto& [begin, end] : runs_of(k)) {
         const auto number = [&](std::size_t i) { return row_[i * samples_ + k] + begin; };
         const kernels::ColorRows<R> out = out_rows(k, y, begin);
-        shade_row(shader_.scene, point_row<R>(s_, id_[k] + begin, number, reach_), end - begin, scratch_, out);
+        PointRow<R> points = point_row<R>(s_, id_[k] + begin, number, reach_);
+        straighten(s_.alpha ? alpha_row(k) : nullptr, points);
+        shade_row(shader_.scene, points, end - begin, scratch_, out);
         fade_row(shader_.scene, id_[k] + begin, end - begin, out);
       }
+      cover(k, y);
     }
   }
 
@@ -421,21 +404,24 @@ class Filler {
       if (to.plane[c] != nullptr) std::copy_n(from.plane[c], n_, to.plane[c]);
   }
 
-  // Once for each face a pixel sees, at the mean of its samples there; all of them get that colour.
+  // Once for each face a pixel sees, at the mean of its samples there; all of them get that colour, each with its own
+  // opacity. Samples that are not there have no share in the albedo.
   void shade_faces(int y) {
     for (std::size_t k = 0; k < samples_; ++k) {
       std::copy_n(id_[k], n_, left_.data() + k * n_);
       for (R* plane : out_rows(k, y).plane)
         if (plane != nullptr) std::fill_n(plane, n_, R(0));
     }
-    const PointRow<R> means = point_row<R>(
-        s_, face_.data(), [&](std::size_t i) { return mean_[i]; }, reach_);
     while (take_face_row<R>(left_.data(), samples_, n_, row_, face_.data(), mean_)) {
+      PointRow<R> means = point_row<R>(
+          s_, face_.data(), [&](std::size_t i) { return mean_[i]; }, reach_);
+      straighten(s_.alpha ? mean_[alpha_] : nullptr, means);
       shade_row(shader_.scene, means, n_, scratch_, color_);
       fade_row(shader_.scene, face_.data(), n_, color_);
       for (std::size_t k = 0; k < samples_; ++k)
         put_face_row(id_[k], face_.data(), n_, color_, out_rows(k, y));
     }
+    for (std::size_t k = 0; k < samples_; ++k) cover(k, y);
   }
 
   const State& s_;
@@ -447,7 +433,7 @@ class Filler {
   std::vector<const R*> reach_;
   kernels::SamplePositions positions_;
   std::size_t n_, samples_;
-  std::size_t lit_numbers_, numbers_;
+  std::size_t lit_numbers_, alpha_, numbers_;  // alpha_: the number that is the albedo's opacity
   std::vector<const R*> row_;
   std::vector<const std::uint32_t*> id_;  // by sample
   RowScratch<R> scratch_;
@@ -458,6 +444,7 @@ class Filler {
   std::vector<Run> mixed_;
   std::vector<R*> mean_;
   kernels::ColorRows<R> color_;
+  std::array<R*, 3> straight_{};
 };
 
 void tile(const State& s, const TilesOf<Inputs>& in, const TilesOf<Outputs>& out, Arena& arena) {
@@ -484,7 +471,8 @@ NodeType nodes::shade_surface() {
       .input("mesh", &Inputs::mesh,
              "The mesh the points were seen on; flat and gouraud light its faces and vertices.")
       .input("albedo", &Inputs::albedo,
-             "Colour that scales the diffuse and ambient light, such as a texture's.")
+             "Colour that scales the diffuse and ambient light, such as a texture's; its alpha is that of "
+             "the point.")
       .input("visibility", &Inputs::visibility,
              "How much of each light reaches each point; left out, nothing hides a light.")
       .input("material", &Inputs::material, "One material for everything, instead of the mesh's own.")
@@ -507,9 +495,9 @@ NodeType nodes::shade_surface() {
           supersampling_name, supersampling,
           "Light is found for every sample, also where all samples of a pixel show one face of one colour.")
       .effect(shadows_name, shadows, "Light does not reach what something else stands in front of.")
-      .output(
-          "color", &Outputs::color,
-          "Linear Rec.709, premultiplied; alpha is the face's opacity where a point is seen, 0 elsewhere.");
+      .output("color", &Outputs::color,
+              "Linear Rec.709, premultiplied; alpha is the opacity of face and albedo where a point is seen, "
+              "else 0.");
 }
 
 }  // namespace frustum

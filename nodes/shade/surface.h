@@ -115,6 +115,37 @@ void fade_row(const Scene<R>& s, const std::uint32_t* id, std::size_t n, const k
       if (id[x] < s.opacity.size()) plane[x] *= s.opacity[id[x]];
 }
 
+/// Whether a point of the row that shows a face is not opaque.
+template <std::floating_point R>
+bool any_clear(const std::uint32_t* id, const R* alpha, std::size_t n) {
+  bool clear = false;
+  for (std::size_t x = 0; x < n; ++x) clear = clear || (id[x] != nothing_there && alpha[x] != R(1));
+  return clear;
+}
+
+/// Light falls on the straight colour: where a point is not opaque, premultiplied albedo is divided by its opacity, in
+/// rows of `to` that `albedo` points to then.
+template <std::floating_point R>
+void straighten_row(const std::uint32_t* id, const R* alpha, std::size_t n, const std::array<R*, 3>& to,
+                    std::array<const R*, 3>& albedo) {
+  if (!any_clear(id, alpha, n)) return;
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t x = 0; x < n; ++x)
+      to[c][x] = alpha[x] > R(0) && alpha[x] != R(1) ? albedo[c][x] / alpha[x] : albedo[c][x];
+    albedo[c] = to[c];
+  }
+}
+
+/// Scales colours by the opacity of each point. What is not there has no light, however bright: 0 times infinity would
+/// be NaN.
+template <std::floating_point R>
+void cover_row(const std::uint32_t* id, const R* alpha, std::size_t n, const kernels::ColorRows<R>& out) {
+  if (!any_clear(id, alpha, n)) return;
+  for (R* plane : out.plane)
+    for (std::size_t x = 0; x < n && plane != nullptr; ++x)
+      plane[x] = alpha[x] == R(0) ? R(0) : plane[x] * alpha[x];
+}
+
 /// Colours of a row of opaque faces; transparent black where nothing is seen.
 template <std::floating_point R>
 void shade_row(const Scene<R>& s, const PointRow<R>& in, std::size_t n, const RowScratch<R>& scratch,

@@ -15,14 +15,16 @@ struct Inputs {
 struct Params {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   bool pyramid = true;
+  double alpha_cutoff = 0;
 };
 struct Outputs {
   Ref<Texture> texture;
 };
 
 Outputs run(const Inputs& in, const Params& p, Context& ctx) {
-  auto texture =
-      make_texture(in.image->raster, {.wrap_u = p.wrap_u, .wrap_v = p.wrap_v, .pyramid = p.pyramid}, ctx);
+  auto texture = make_texture(
+      in.image->raster,
+      {.wrap_u = p.wrap_u, .wrap_v = p.wrap_v, .pyramid = p.pyramid, .alpha_cutoff = p.alpha_cutoff}, ctx);
   const Rect window = in.image->raster.frame().window;
   ctx.count("levels",
             p.pyramid ? static_cast<std::uint64_t>(pyramid_levels(window.width(), window.height())) : 1);
@@ -44,6 +46,10 @@ NodeType nodes::texture_image() {
           .param("wrap_v", &Params::wrap_v, "What lies beyond v = 0 and 1.")
           .param("pyramid", &Params::pyramid,
                  "Whether smaller levels are made, which trilinear lookup needs; a third more memory.")
+          .param(
+              "alpha_cutoff", &Params::alpha_cutoff,
+              "Above 0, what is looked up with less opacity is not there, and the rest is opaque; 0 blends.",
+              {.range = between(0, 1)})
           .output("texture", &Outputs::texture, "The texture; the top row of the image is at v = 1.");
   depend_on_color_environment(type);
   return type;

@@ -36,6 +36,7 @@ struct Skin {
   std::vector<kernels::TexelLevel> levels;       // of a pyramid
   std::array<RealPlane, 6> uv{};                 // u v du_dx dv_dx du_dy dv_dy
   std::optional<glm::dmat3> texture_from_uv;
+  double alpha_cutoff = 0;
 };
 
 struct State {
@@ -43,7 +44,7 @@ struct State {
   Lookup filter;
   std::vector<Skin> skins;             // at least one
   std::vector<std::uint32_t> skin_of;  // by face; empty: all have the first
-  std::array<RealPlane, 3> color{};    // of the vertices
+  std::array<RealPlane, 4> color{};    // of the vertices; the last one, opacity, where they have it
   int id = -1;
 };
 
@@ -106,6 +107,7 @@ bool readable(const Wish& w, const std::string& uv, std::size_t planes) {
 Skin skin_of_texture(const Wish& w, Ref<Texture> texture, std::uint32_t uv_set) {
   Skin s{
       .texture = texture, .constant = {}, .levels = texel_levels(*texture), .uv = {}, .texture_from_uv = {}};
+  if (const auto* pyramid = std::get_if<MipPyramid>(&texture->source)) s.alpha_cutoff = pyramid->alpha_cutoff;
   const std::string uv = uv_column_name(uv_set);
   const bool board = std::holds_alternative<Checker>(texture->source);
   const bool filters = w.filter == Lookup::trilinear || (board && w.filter == Lookup::bilinear);
@@ -180,6 +182,10 @@ void dress_faces(const Wish& w, const Mesh& mesh, State& s) {
 
 void dress(const Wish& w, State& s) {
   const Inputs& in = w.in;
+  if (in.mesh && (*in.mesh)->faces() == 0) {  // nothing is seen, and nothing needs coordinates
+    s.skins = {white_skin(w)};
+    return;
+  }
   if (in.texture) {
     s.skins = {skin_of_texture(w, *in.texture, 0)};
     return;
@@ -196,9 +202,11 @@ void dress(const Wish& w, State& s) {
   if (in.points.frame().find("color.x"))
     s.color = {read_real(in.points, "color.x", s.precision), read_real(in.points, "color.y", s.precision),
                read_real(in.points, "color.z", s.precision)};
+  if (in.points.frame().find("color.w")) s.color[3] = read_real(in.points, "color.w", s.precision);
 }
 
 bool is_white(const Skin& s) {
+  if (s.alpha_cutoff > 1) return false;  // nothing is there
   return s.constant ? *s.constant == std::array<float, 4>{1, 1, 1, 1} : !s.texture;
 }
 
@@ -262,21 +270,19 @@ Verdict mip_levels(const Inputs& in, const Params& p, const Context&) {
   return off_exact("no texture that is looked up has a second level", samples);
 }
 
-// Texel rows and vertex colours carry opacity; whoever shades takes every surface as opaque.
+// Whether colours are other than opaque; what is behind is another node's to know.
 Verdict transparency(const Inputs& in, const Params&, const Context&) {
-  constexpr std::string_view nothing =
-      "it is shown as opaque: no node blends by the opacity of a texture or a vertex yet";
   for (const auto& [name, texture] : textures_of(in))
-    if (const float alpha = least_opacity(*texture); alpha < 1 - 0x1p-20F)
-      return absent(fmt::format("{} has an opacity of {:.3g}, and {}", name, alpha, nothing));
+    if (may_be_clear(*texture))
+      return on(fmt::format("{} has an opacity of {:.3g}", name, least_opacity(*texture)));
   const Column* color = in.mesh && !in.texture ? (*in.mesh)->find("color") : nullptr;
   if (color != nullptr && color->width() == 4) {
     const Ref<Column> rgba = (*in.mesh)->real<double>("color");
     const auto rows = rgba->values<glm::dvec4>();
     const auto row = std::find_if(rows.begin(), rows.end(), [](const glm::dvec4& c) { return c.a < 1; });
     if (row != rows.end())
-      return absent(fmt::format("the vertex colour in row {} has an opacity of {:.3g}, and {}",
-                                row - rows.begin(), row->a, nothing));
+      return on(
+          fmt::format("the vertex colour in row {} has an opacity of {:.3g}", row - rows.begin(), row->a));
   }
   return off_exact("every texel and every vertex colour is opaque");
 }
@@ -299,6 +305,8 @@ class Sampler {
     const auto take = [&] { return arena.take<R>(n_); };
     if constexpr (sizeof(R) == 8)
       for (auto& row : wide_) row = take();
+    tests_ = std::any_of(s.skins.begin(), s.skins.end(), [](const Skin& k) { return k.alpha_cutoff > 0; });
+    if (tests_) alpha_ = take();
     const bool moves =
         std::any_of(s.skins.begin(), s.skins.end(), [](const Skin& k) { return k.texture_from_uv; });
     for (std::size_t i = 0; i < moved_.size() && moves; ++i) moved_[i] = take();
@@ -318,14 +326,34 @@ class Sampler {
     const auto* id = s_.id < 0 ? nullptr : points_.row<const std::uint32_t>(s_.id, sample, y);
     kernels::RgbaRows<R> to;
     for (std::size_t c = 0; c < 4; ++c) to.plane[c] = out_row<R>(out_, static_cast<int>(c), sample, y);
+    if (tests_ && to.plane[3] == nullptr) to.plane[3] = alpha_.data();
     if (s_.skin_of.empty())
       look_up(s_.skins[0], sample, y, id, to);
     else
       look_up_each(sample, y, id, to);
-    for (std::size_t c = 0; c < 3 && s_.color[0]; ++c) {
-      if (to.plane[c] == nullptr) continue;
-      const R* color = real_row<R>(points_, s_.color[c], sample, y, wide_[0]);
-      for (std::size_t x = 0; x < n_; ++x) to.plane[c][x] = to.plane[c][x] * color[x];
+    for (std::size_t c = 0; c < 3 && s_.color[0]; ++c) scale(to.plane[c], s_.color[c], sample, y);
+    for (std::size_t c = 0; c < 4 && s_.color[3]; ++c) scale(to.plane[c], s_.color[3], sample, y);
+    if (tests_) test_opacity(id, to);
+  }
+
+  void scale(R* row, RealPlane by, int sample, int y) {
+    if (row == nullptr) return;
+    const R* factor = real_row<R>(points_, by, sample, y, wide_[0]);
+    for (std::size_t x = 0; x < n_; ++x) row[x] = row[x] * factor[x];
+  }
+
+  // glTF 2.0, 3.9.4: at least the cutoff is opaque, the rest is not there. Colours become those of the straight ones.
+  void test_opacity(const std::uint32_t* id, const kernels::RgbaRows<R>& to) const {
+    for (std::size_t x = 0; x < n_; ++x) {
+      const std::size_t face = s_.skin_of.empty() ? 0 : id[x];
+      if (!s_.skin_of.empty() && face >= s_.skin_of.size()) continue;
+      const R cutoff = static_cast<R>(s_.skins[s_.skin_of.empty() ? 0 : s_.skin_of[face]].alpha_cutoff);
+      if (!(cutoff > 0)) continue;
+      const R alpha = to.plane[3][x];
+      const bool there = alpha >= cutoff;
+      for (std::size_t c = 0; c < 3; ++c)
+        if (to.plane[c] != nullptr) to.plane[c][x] = there ? to.plane[c][x] / alpha : R(0);
+      to.plane[3][x] = there ? R(1) : R(0);
     }
   }
 
@@ -399,6 +427,8 @@ class Sampler {
   std::array<std::span<R>, 4> apart_;
   std::span<std::uint32_t> tag_, masked_;
   std::vector<std::uint8_t> present_;
+  bool tests_ = false;  // some skin has a cutoff
+  std::span<R> alpha_;  // where nobody reads the plane
 };
 
 void tile(const State& s, const TilesOf<Inputs>& in, const TilesOf<Outputs>& out, Arena& arena) {
@@ -437,7 +467,7 @@ NodeType nodes::texture_sample() {
                45})  // tests/bench/effects_bench.cpp, one thread, a machine shared with others: 41 to 52
       .effect(levels_name, mip_levels,
               "A level of the pyramid is chosen by the footprint of every point, and two blended.")
-      .effect("transparency", transparency, "What lies behind shines through surfaces that are not opaque.")
+      .effect("transparency", transparency, "Colours carry the opacity of textures and vertices.")
       .output("image", &Outputs::image, "Colour at every sample, linear Rec.709, premultiplied.");
 }
 

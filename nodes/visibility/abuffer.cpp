@@ -5,6 +5,7 @@
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/pattern.h"
 #include "runtime/buffers/screen_view.h"
+#include "runtime/buffers/texture.h"
 #include "runtime/buffers/transparency.h"
 #include "runtime/core/node_type.h"
 
@@ -22,6 +23,8 @@ constexpr std::uint64_t most_in_a_pixel = 1 << 16;
 struct Inputs {
   Ref<Mesh> mesh;
   std::optional<Ref<SamplePattern>> pattern;
+  std::optional<Ref<Material>> material;
+  std::optional<Ref<Texture>> texture;
 };
 struct Params {
   std::optional<int> max_layers = {};
@@ -40,22 +43,13 @@ struct Filler {
 };
 using State = std::variant<Filler<float>, Filler<double>>;
 
-// By face whether nothing behind it shows; empty where no face is opaque.
-std::vector<std::uint8_t> opaque_faces(const Mesh& mesh) {
-  std::vector<std::uint8_t> opaque(mesh.faces(), 1);
-  const Column* transparency = transparency_of(mesh);
-  if (transparency == nullptr) return opaque;
-  bool any = false;
-  for (std::size_t f = 0; f < opaque.size(); ++f) {
-    opaque[f] = transparency->number(f, 0) <= 0 ? 1 : 0;
-    any = any || opaque[f] != 0;
-  }
-  if (!any) opaque.clear();
-  return opaque;
+std::vector<std::uint8_t> faces_that_hide(const Inputs& in) {
+  return opaque_faces(*in.mesh, in.material ? in.material->get() : nullptr,
+                      in.texture ? in.texture->get() : nullptr);
 }
 
 Verdict hiding(const Inputs& in, const Params&, const Context&) {
-  const std::vector<std::uint8_t> opaque = opaque_faces(*in.mesh);
+  const std::vector<std::uint8_t> opaque = faces_that_hide(in);
   const auto faces = static_cast<std::uint64_t>(std::count(opaque.begin(), opaque.end(), 1));
   if (faces == 0) return off_exact("no face is opaque: every fragment shows");
   return on(fmt::format("{} of {} faces are opaque", faces, in.mesh->faces()), faces);
@@ -105,7 +99,7 @@ Ref<SamplePattern> layered(const Ref<SamplePattern>& pattern, int layers, Contex
 template <class R>
 std::pair<Filler<R>, Frame> make_filler(const Inputs& in, const Params& p, Rect window, Context& ctx) {
   Filler<R> f{.view = ScreenView<R>(in.mesh), .pattern = in.pattern.value_or(nullptr)};
-  if (ctx.simulates(hiding_name)) f.hides = opaque_faces(*in.mesh);
+  if (ctx.simulates(hiding_name)) f.hides = faces_that_hide(in);
   ctx.claim(f.hides.size());
   const LayerRasterizer<R>& r =
       f.rasterizer.emplace(f.view.triangles(), sample_positions(f.pattern.get()), pixel_rect(window),
@@ -162,9 +156,17 @@ NodeType nodes::visibility_abuffer() {
       .cite("Carpenter 1984, The A-buffer, an antialiased hidden surface method, doi:10.1145/800031.808585")
       .covers(42)
       .input("mesh", &Inputs::mesh,
-             "Triangles of either winding; column transparency says which let others show.",
+             "Triangles of either winding; column transparency, textures and vertex colours say which let "
+             "others "
+             "show.",
              {.space = Space::screen})
       .input("pattern", &Inputs::pattern, "Where a pixel's samples lie; left out: one sample in its middle.")
+      .input("material", &Inputs::material,
+             "The material that shading takes for everything, instead of the mesh's own: its texture may "
+             "have holes.")
+      .input("texture", &Inputs::texture,
+             "The texture that shading takes for everything, instead of the materials' own and the vertex "
+             "colours.")
       .param("max_layers", &Params::max_layers,
              "Keeps the nearest so many fragments of a sample; null keeps all. Raising it costs memory and "
              "time.",

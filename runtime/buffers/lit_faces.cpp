@@ -73,11 +73,34 @@ LitFaces<R> light_vertices(const ShadingScene<R>& s, const Mesh& mesh, const Con
   return lit;
 }
 
+template <std::floating_point R>
+std::vector<LitFaces<R>> light_by_source(const ShadingScene<R>& s, const Mesh& mesh, bool flat, bool apart,
+                                         const Context& ctx) {
+  const auto light = [&](const ShadingScene<R>& by) {
+    return flat ? light_faces(by, mesh, ctx) : light_vertices(by, mesh, ctx);
+  };
+  std::vector<LitFaces<R>> lit;
+  if (!apart) {
+    lit.push_back(light(s));
+    return lit;
+  }
+  ShadingScene<R> one = s;
+  for (const auto& source : s.lights) {
+    one.lights = {source};
+    lit.push_back(light(one));
+  }
+  return lit;
+}
+
 template std::vector<float> sides_of_faces(const ShadingScene<float>&, const Mesh&, const Context&);
 template std::vector<double> sides_of_faces(const ShadingScene<double>&, const Mesh&, const Context&);
 template LitFaces<float> light_faces(const ShadingScene<float>&, const Mesh&, const Context&);
 template LitFaces<double> light_faces(const ShadingScene<double>&, const Mesh&, const Context&);
 template LitFaces<float> light_vertices(const ShadingScene<float>&, const Mesh&, const Context&);
 template LitFaces<double> light_vertices(const ShadingScene<double>&, const Mesh&, const Context&);
+template std::vector<LitFaces<float>> light_by_source(const ShadingScene<float>&, const Mesh&, bool, bool,
+                                                      const Context&);
+template std::vector<LitFaces<double>> light_by_source(const ShadingScene<double>&, const Mesh&, bool, bool,
+                                                       const Context&);
 
 }  // namespace frustum

@@ -37,4 +37,9 @@ LitFaces<R> light_faces(const kernels::ShadingScene<R>&, const Mesh&, const Cont
 template <std::floating_point R>
 LitFaces<R> light_vertices(const kernels::ShadingScene<R>&, const Mesh&, const Context&);
 
+// By face (flat) or by vertex: all light together, or that of each light of the scene apart.
+template <std::floating_point R>
+std::vector<LitFaces<R>> light_by_source(const kernels::ShadingScene<R>&, const Mesh&, bool flat, bool apart,
+                                         const Context&);
+
 }  // namespace frustum

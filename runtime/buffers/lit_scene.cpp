@@ -1,5 +1,9 @@
 #include "runtime/buffers/lit_scene.h"
 
+#include "nodes/kernels/face_light.h"
+#include "nodes/kernels/parallel.h"
+#include "runtime/buffers/shading_scene.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -176,6 +180,34 @@ Verdict needs_shadows(const LitScene& s, std::span<const glm::dvec3> position) {
         "the mesh is closed and no vertex stands in front of a face: a convex body shades nothing");
   return absent(fmt::format("light {} shines, and {} faces are too many to be shown to be convex; {}", *lamp,
                             s.mesh.faces(), nothing));
+}
+
+Verdict needs_shadows(const LitScene& s) {
+  const bool own = s.mesh.find("world") == nullptr && s.mesh.space() == Space::world;
+  const Column* column = s.mesh.find(own ? "position" : "world");
+  if (column == nullptr || (column->name() == "position" && !own) || column->width() != 3)
+    return needs_shadows(s, {});
+  const Ref<Column> world = s.mesh.real<double>(column->name());
+  return needs_shadows(s, world->values<glm::dvec3>());
+}
+
+Verdict needs_sides(const LitScene& s, bool all, const Camera* camera, std::uint64_t points,
+                    const Context& ctx) {
+  if (!all && !s.used([](const Material& m) { return m.two_sided; }))
+    return off_exact("no face has a material with two sides", points);
+  if (camera == nullptr) return on("a material has two sides", points);
+  return ctx.real([&]<class R>() {
+    const Ref<Column> world = world_positions<R>(s.mesh);
+    const auto q = world->template values<glm::vec<3, R>>();
+    const auto triangles = s.mesh.triangles();
+    const kernels::Triple<R> eye = eye_of<R>(*camera);
+    const std::size_t face = kernels::first_where(triangles.size(), [&](std::size_t f) {
+      const glm::uvec3& t = triangles[f];
+      return kernels::seen_side(q[t[0]], q[t[1]], q[t[2]], eye) < R(0);
+    });
+    if (face == triangles.size()) return off_exact("no face turns its back to the camera", points);
+    return on(fmt::format("face {} turns its back to the camera", face), points);
+  });
 }
 
 }  // namespace frustum

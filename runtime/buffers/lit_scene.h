@@ -6,6 +6,7 @@
 
 #include "runtime/buffers/light.h"
 #include "runtime/buffers/mesh.h"
+#include "runtime/core/context.h"
 #include "runtime/core/effect.h"
 
 #include <functional>
@@ -43,11 +44,16 @@ Verdict needs_ambient(const LitScene&, std::uint64_t points);
 // Whether the light of a point light depends on the distance.
 Verdict needs_attenuation(const LitScene&, std::uint64_t points);
 
+// Whether a face with two sides, or any where all have two, turns its back to the camera.
+Verdict needs_sides(const LitScene&, bool all, const Camera*, std::uint64_t points, const Context&);
+
 // Absent where a light shines on a surface and something may stand between them. It cannot for a closed mesh in convex
 // position (no vertex lies in front of any face's plane), which is found out for small ones. A mesh that is not known to
 // be closed may have lost what casts a shadow to clipping and culling.
 //   position  world space, one a vertex; empty: not known
 // Cost: up to 2^20 dot products.
 Verdict needs_shadows(const LitScene&, std::span<const glm::dvec3> position);
+// The same with the mesh's own positions, where it keeps any of world space.
+Verdict needs_shadows(const LitScene&);
 
 }  // namespace frustum

@@ -39,7 +39,7 @@ Health health_of_numbers(const Material& m, std::string_view owner) {
 void save_numbers(const Material& m, std::uint32_t texture, ArchiveWriter& w) {
   w.text(m.name).value(m.model);
   for (const glm::dvec3& v : {m.ambient, m.diffuse, m.specular, m.emission}) w.raw(&v, sizeof v);
-  w.value(m.shininess).value(m.two_sided).value(m.uv_set).value(texture);
+  w.value(m.shininess).value(m.two_sided).value(m.unlit).value(m.uv_set).value(texture);
   w.raw(&m.texture_from_uv, sizeof m.texture_from_uv);
 }
 
@@ -50,6 +50,7 @@ Material load_numbers(const std::vector<Ref<Texture>>& textures, ArchiveReader& 
   for (glm::dvec3* v : {&m.ambient, &m.diffuse, &m.specular, &m.emission}) r.raw(v, sizeof *v);
   m.shininess = r.value<double>();
   m.two_sided = r.flag();
+  m.unlit = r.flag();
   m.uv_set = r.value<std::uint32_t>();
   const auto texture = r.value<std::uint32_t>();
   if (texture > textures.size()) throw ArchiveError("a texture that is not there");

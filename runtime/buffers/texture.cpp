@@ -38,7 +38,7 @@ void hash_source(const Checker& c, Hasher& h) {
 }
 
 void hash_source(const MipPyramid& p, Hasher& h) {
-  h.value(p.wrap_u).value(p.wrap_v).value(p.levels.size());
+  h.value(p.wrap_u).value(p.wrap_v).value(p.alpha_cutoff).value(p.levels.size());
   for (const auto& level : p.levels) h.value(level.width).value(level.height).span<float>(level.rgba);
 }
 
@@ -62,11 +62,13 @@ Json summary_of(const MipPyramid& p) {
     channel.update(to_json(measure(std::move(values))));
     channels.push_back(std::move(channel));
   }
-  return {{"source", "image"},
-          {"wrap_u", choices(p.wrap_u)[static_cast<std::size_t>(p.wrap_u)].second},
-          {"wrap_v", choices(p.wrap_v)[static_cast<std::size_t>(p.wrap_v)].second},
-          {"levels", std::move(levels)},
-          {"channels", std::move(channels)}};
+  Json out = {{"source", "image"},
+              {"wrap_u", choices(p.wrap_u)[static_cast<std::size_t>(p.wrap_u)].second},
+              {"wrap_v", choices(p.wrap_v)[static_cast<std::size_t>(p.wrap_v)].second},
+              {"levels", std::move(levels)},
+              {"channels", std::move(channels)}};
+  if (p.alpha_cutoff > 0) out["alpha_cutoff"] = json_number(p.alpha_cutoff);
+  return out;
 }
 
 struct Ops {
@@ -80,7 +82,7 @@ struct Ops {
       for (const glm::dvec3& v : {c->even, c->odd}) w.raw(&v, sizeof v);
     }
     if (const auto* p = std::get_if<MipPyramid>(&t.source)) {
-      w.value(p->wrap_u).value(p->wrap_v).value(std::uint64_t{p->levels.size()});
+      w.value(p->wrap_u).value(p->wrap_v).value(p->alpha_cutoff).value(std::uint64_t{p->levels.size()});
       for (const auto& level : p->levels) {
         w.value(level.width).value(level.height).value(std::uint64_t{level.rgba.size()});
         // Apart and by content, since every mesh of a scene carries its textures along. Nobody owns a
@@ -99,6 +101,7 @@ struct Ops {
     MipPyramid p;
     p.wrap_u = r.choice(Wrap::mirror);
     p.wrap_v = r.choice(Wrap::mirror);
+    p.alpha_cutoff = r.value<double>();
     for (std::size_t n = r.count(1); n > 0; --n) {
       const int width = r.value<int>(), height = r.value<int>();
       const auto values = r.value<std::uint64_t>();

@@ -35,6 +35,9 @@ struct MipPyramid {
   };
   std::vector<Level> levels;
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  // Above 0: where the opacity that is looked up, times that of the vertices, is below it nothing is there, and
+  // elsewhere the surface is opaque. 0: what lies behind shows by that opacity.
+  double alpha_cutoff = 0;
 };
 
 // Immutable once published. Materials share textures and meshes share materials, so digest and health of the

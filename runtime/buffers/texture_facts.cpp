@@ -20,6 +20,11 @@ std::optional<std::array<float, 4>> constant_color(const Texture& t) {
   return color;
 }
 
+bool may_be_clear(const Texture& t) {
+  const auto* pyramid = std::get_if<MipPyramid>(&t.source);
+  return (pyramid != nullptr && pyramid->alpha_cutoff > 1) || least_opacity(t) < 1 - 0x1p-20F;
+}
+
 float least_opacity(const Texture& t) {
   const auto* pyramid = std::get_if<MipPyramid>(&t.source);
   if (pyramid == nullptr || pyramid->levels.empty()) return 1;

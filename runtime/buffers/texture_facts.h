@@ -13,6 +13,10 @@ namespace frustum {
 // Cost: up to the first texel that differs.
 std::optional<std::array<float, 4>> constant_color(const Texture&);
 
+// Whether what is looked up may let others show. Means of opaque texels may round to a little less than 1; a cutoff above
+// 1 leaves nothing of any.
+bool may_be_clear(const Texture&);
+
 // The least alpha of the finest level of at most 2^16 texels: one transparent texel of 2^24 shows in it. 1 for a
 // checkerboard.
 float least_opacity(const Texture&);

@@ -1,9 +1,12 @@
-// How much of what lies behind a face shows through it: a column of the mesh, so that it goes where faces go.
+// How much of what lies behind a face shows through it: a column of the mesh, so that it goes where faces go, and the
+// opacity of its vertices and of its material's texture.
 #pragma once
 
 #include "runtime/buffers/mesh.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <string_view>
 #include <vector>
 
 namespace frustum {
@@ -31,5 +34,13 @@ std::vector<R> opacities_of(const Mesh& mesh) {
       opacity.push_back(std::clamp(R(1) - static_cast<R>(c->number(f, 0)), R(0), R(1)));
   return opacity;
 }
+
+// By face 1 where nothing behind it can show, else 0; empty where no face is opaque. What texture.sample and
+// shade.surface multiply decides: the column, the texture of the face's material, and the colours of its vertices.
+//   material  for all faces, instead of the mesh's own; may be null
+//   texture   for all faces, instead of materials' textures and vertex colours; may be null
+// NaN counts as not opaque. Cost: linear in faces and vertices, and up to 2^16 texels a texture.
+std::vector<std::uint8_t> opaque_faces(const Mesh&, const Material* material = nullptr,
+                                       const Texture* texture = nullptr);
 
 }  // namespace frustum

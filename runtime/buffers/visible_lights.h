@@ -6,7 +6,9 @@
 #pragma once
 
 #include "nodes/kernels/lighting.h"
+#include "runtime/buffers/image.h"
 #include "runtime/buffers/light.h"
+#include "runtime/buffers/real_rows.h"
 
 #include <span>
 #include <string>
@@ -18,5 +20,9 @@ inline std::string visibility_plane(std::size_t source) { return "V" + std::to_s
 
 // The sources that may be hidden, in the numbers' own precision.
 std::vector<kernels::LightSource<double>> light_sources(std::span<const Ref<LightSet>> lights);
+
+// The planes of such an image by source; unset for those that nothing hides. Throws NodeError("other_lights") where it
+// has one that belongs to none of the sources.
+std::vector<RealPlane> read_visible_lights(const Tiled<Image>&, std::size_t sources, Precision);
 
 }  // namespace frustum

@@ -97,7 +97,8 @@ Ref<Texture> make_texture(const Raster& picture, const TextureOptions& options, 
   const Source source = find_source(f);
   const std::string_view space = f.color_space.empty() ? linear_rec709 : f.color_space;
   const ColorConversion conversion = ColorConfig::open({})->conversion(space, linear_rec709);
-  MipPyramid pyramid{.levels = {}, .wrap_u = options.wrap_u, .wrap_v = options.wrap_v};
+  MipPyramid pyramid{
+      .levels = {}, .wrap_u = options.wrap_u, .wrap_v = options.wrap_v, .alpha_cutoff = options.alpha_cutoff};
   pyramid.levels.push_back(first_level(picture, source, conversion, options.opaque));
   while (options.pyramid && (pyramid.levels.back().width > 1 || pyramid.levels.back().height > 1)) {
     ctx.poll();

@@ -9,7 +9,8 @@ namespace frustum {
 
 struct TextureOptions {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-  bool pyramid = true;  // smaller levels too, which trilinear lookup needs: a third more memory
+  bool pyramid = true;      // smaller levels too, which trilinear lookup needs: a third more memory
+  double alpha_cutoff = 0;  // of the pyramid
   bool opaque = false;  // the picture's alpha says nothing of the surface: colours become straight, alpha 1
 };
 

@@ -90,7 +90,7 @@ std::vector<Buffer> one_of_each() {
   pattern.x.assign(12, 5), pattern.y.assign(12, 4095);
   MipPyramid pyramid;
   pyramid.levels = {{2, 1, {1, 2, 3, 4, 5, 6, 7, 8}}, {1, 1, {9, 9, 9, 9}}};
-  pyramid.wrap_v = Wrap::mirror;
+  pyramid.wrap_v = Wrap::mirror, pyramid.alpha_cutoff = 0.5;
   Table table;
   table.columns = {{.name = "edge", .unit = "px", .numbers = {1, 2.5}},
                    {.name = "why", .texts = {"", "a\0b"}}};
@@ -101,6 +101,7 @@ std::vector<Buffer> one_of_each() {
   Material textured{.name = "brick"};
   textured.emission = {1, 2, 3}, textured.two_sided = true, textured.uv_set = 1;
   textured.texture_from_uv[2][0] = 0.25;
+  textured.unlit = true;
   textured.texture = std::make_shared<const Texture>(pyramid);
   Mesh walls = *mesh_of(2).as<Mesh>();
   walls.materials = std::make_shared<const MaterialSet>(MaterialSet{{textured, Material{}, textured}});

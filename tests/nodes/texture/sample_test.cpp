@@ -235,6 +235,40 @@ TEST(TextureSample, EachFaceTakesTheTextureOfItsMaterial) {
   }
 }
 
+// One texel of opacity a, red, premultiplied; what has less than `cutoff` is not there.
+Ref<Texture> clear_texture(float a, double cutoff) {
+  return texture(MipPyramid{.levels = {{1, 1, {a, 0, 0, a}}}, .alpha_cutoff = cutoff});
+}
+
+TEST(TextureSample, CutoffsMakeWhatIsLookedUpOpaqueOrNothing) {
+  const std::vector<Material> materials = {
+      Material{.texture = clear_texture(0.25F, 0)}, Material{.texture = clear_texture(0.25F, 0.25)},
+      Material{.texture = clear_texture(0.25F, 0.26)}, Material{.texture = clear_texture(1, 2)}};
+  const auto mesh = dressed_mesh(materials, {0, 1, 2, 3});
+  const double red[4] = {0.25, 1, 0, 0}, alpha[4] = {0.25, 1, 0, 0};
+  for (const Precision precision : {Precision::single, Precision::real_double}) {
+    const test::PixelRun run(nodes::texture_sample(), "{}",
+                             {{"points", {striped_points(false, false)}}, {"mesh", {mesh}}}, precision);
+    EXPECT_EQ(test::break_of_tile_law(run), "");
+    const Raster image = run.whole();
+    for (int x = 0; x < 30; ++x) {
+      const std::size_t face = static_cast<std::size_t>(x / 3 % 4);
+      EXPECT_EQ(image.value(0, 0, x, 1), x % 5 == 4 ? 0 : red[face]) << x;
+      EXPECT_EQ(image.value(3, 0, x, 1), x % 5 == 4 ? 0 : alpha[face]) << x;
+    }
+  }
+  // One for everything, with a cutoff and without.
+  for (const auto& [cutoff, there] : {std::pair{0.5, 0.0}, std::pair{0.125, 1.0}}) {
+    const Raster image = test::PixelRun(nodes::texture_sample(), "{}",
+                                        {{"points", {striped_points(false, false)}},
+                                         {"texture", {clear_texture(0.25F, cutoff)}}})
+                             .whole();
+    EXPECT_EQ(image.value(3, 0, 0, 0), there);
+    EXPECT_EQ(image.value(0, 0, 0, 0), there);
+    EXPECT_EQ(image.value(3, 0, 4, 0), 0) << "nothing seen";
+  }
+}
+
 TEST(TextureSample, MaterialsChooseTheirCoordinatesAndMoveThem) {
   // Four texels: red and green above, blue and white below.
   const auto four = texture(MipPyramid{.levels = {{2, 2, {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 1, 1, 1, 1}}}});

@@ -2,6 +2,7 @@
 
 #include "nodes/rasterize.h"
 #include "nodes/visibility.h"
+#include "runtime/buffers/texture.h"
 #include "tests/nodes/rasterize/screen_mesh.h"
 
 #include <gmock/gmock.h>
@@ -55,6 +56,44 @@ bool same_bytes(const Raster& a, const Raster& b) {
         return false;
     }
   return true;
+}
+
+// Two opaque squares, one behind the other: what shading takes for them may have holes.
+TEST(VisibilityAbuffer, WhatATextureShowsThroughIsKept) {
+  auto mesh = squares({0.25, 0.5}, {1});
+  const auto texel = [](float alpha, double cutoff) {
+    return std::make_shared<const Texture>(
+        MipPyramid{.levels = {{1, 1, {alpha, 0, 0, alpha}}}, .alpha_cutoff = cutoff});
+  };
+  const auto samples = [&](const test::NodeInputs& in) {
+    return test::run_node(nodes::visibility_abuffer(), nlohmann::json::object(), in)[0]
+        .as<Visibility>()
+        ->raster.frame()
+        .samples();
+  };
+  const auto with = [&](const Ref<Texture>& texture) { return Buffer(texture); };
+  const auto of = [&](const Ref<Texture>& texture) {
+    return Buffer(std::make_shared<const Material>(Material{.texture = texture}));
+  };
+  const Buffer seen = buffer_of(mesh);
+  EXPECT_EQ(samples({{seen}}), 1);
+  EXPECT_EQ(samples({{seen}, {}, {}, {with(texel(1, 0))}}), 1);
+  EXPECT_EQ(samples({{seen}, {}, {}, {with(texel(0.5F, 0))}}), 2);
+  EXPECT_EQ(samples({{seen}, {}, {}, {with(texel(0.5F, 0.5))}}), 2) << "a cutoff decides later";
+  EXPECT_EQ(samples({{seen}, {}, {}, {with(texel(1, 2))}}), 2) << "nothing of it is there";
+  EXPECT_EQ(samples({{seen}, {}, {of(texel(0.5F, 0))}}), 2);
+  EXPECT_EQ(samples({{seen}, {}, {of(texel(0.5F, 0))}, {with(texel(1, 0))}}), 1) << "the texture is taken";
+  auto dressed = std::make_shared<Mesh>(*mesh);
+  dressed->materials = std::make_shared<const MaterialSet>(
+      MaterialSet{{Material{.texture = texel(0.5F, 0)}, Material{.texture = texel(1, 0)}}});
+  for (const std::uint32_t front : {0u, 1u}) {
+    const std::uint32_t number[] = {front, front, 1, 1};
+    const Mesh m = dressed->with(Column::make<std::uint32_t>("material", Domain::face, number));
+    EXPECT_EQ(samples({{buffer_of(std::make_shared<Mesh>(m))}}), front == 0 ? 2 : 1);
+  }
+  const std::vector<glm::vec4> color(mesh->vertices(), glm::vec4(1, 1, 1, 0.5F));
+  const Mesh faint = mesh->with(Column::make<glm::vec4>("color", Domain::vertex, color));
+  EXPECT_EQ(samples({{buffer_of(std::make_shared<Mesh>(faint))}}), 2);
 }
 
 std::vector<std::uint32_t> list_at(const Raster& r, int x, int y, int samples = 1, int sample = 0) {
