@@ -61,10 +61,11 @@ class Assembler {
         size_(bytes.size()),
         source_(gltf::open(bytes, file)),
         document_(*source_.json, "", file),
-        data_(document_, file, source_.binary) {}
+        data_(document_, file, source_.binary),
+        materials_(document_.objects("materials")) {}
 
   GltfScene run() {
-    Flattened scene = flatten(document_, file_, notes_);
+    Flattened scene = flatten(document_, notes_);
     list_parts(scene.instances);
     check_size();
     GltfScene out;
@@ -89,7 +90,6 @@ class Assembler {
 
   void list_parts(const std::vector<Instance>& instances) {
     const auto meshes = document_.objects("meshes");
-    const std::size_t materials = document_.objects("materials").size();
     const auto used = document_.texts("extensionsUsed");
     const bool quantized = std::find(used.begin(), used.end(), "KHR_mesh_quantization") != used.end();
     primitives_.resize(meshes.size());
@@ -97,7 +97,7 @@ class Assembler {
     for (const Instance& instance : instances) {
       auto& of = primitives_[instance.mesh];
       if (std::exchange(read[instance.mesh], char{1}) == 0)
-        of = read_primitives(meshes[instance.mesh], file_, data_, materials, quantized, notes_);
+        of = read_primitives(meshes[instance.mesh], file_, data_, materials_.size(), quantized, notes_);
       for (const Primitive& p : of) add_part(p, instance.world_from_mesh);
     }
   }
@@ -108,9 +108,18 @@ class Assembler {
     parts_.push_back({&p, world, kernels::determinant_sign(l[0], l[1], l[2]) < 0, moved, vertices_, faces_});
     vertices_ += p.vertices(), faces_ += p.triangles();
     if (!p.normal) facets_ += p.triangles();
-    if (p.color) color_width_ = std::max(color_width_, p.color->width);
+    if (p.color) color_width_ = std::max(color_width_, p.color->width == 4 && alpha_counts(p) ? 4 : 3);
     for (const auto& [set, accessor] : p.uv) uv_sets_.insert(set);
     if (std::max(vertices_, faces_) > std::size_t{1} << 40) check_size();  // long before the sums overflow
+  }
+
+  // Vertices of opaque materials have no opacity, whatever the file says; a cutoff is that of a texture.
+  bool alpha_counts(const Primitive& p) {
+    if (!p.material || alpha_mode(materials_[*p.material]) == AlphaMode::opaque) return false;
+    const Object& material = materials_[*p.material];
+    if (alpha_mode(material) == AlphaMode::blend || has_color_texture(material)) return true;
+    notes_.add(material.path(), "has alphaMode MASK and no texture: the opacity of vertices is left out");
+    return false;
   }
 
   void check_size() const {
@@ -349,27 +358,37 @@ class Assembler {
     for (const Part& p : parts_) {
       Color* out = all + p.vertex;
       const auto& from = p.primitive->color;
-      if (!from) {
+      if (!from)
         std::fill_n(out, p.primitive->vertices(), Color(1));
-      } else if (from->width == width) {
-        read_rows<R, width>(*from, file_, &out->x, [](std::size_t, std::size_t) {});
-      } else {
-        std::vector<Vec3> three(from->count);
-        read_rows<R, 3>(*from, file_, &three.data()->x, [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            out[i] = Color(1);
-            for (glm::length_t k = 0; k < 3; ++k) out[i][k] = three[i][k];
-          }
-        });
-      }
+      else if (from->width == 3)
+        read_colors<3>(*from, false, out);
+      else
+        read_colors<4>(*from, alpha_counts(*p.primitive), out);
     }
     return column;
+  }
+
+  template <int has, class Color>
+  void read_colors(const Accessor& from, bool alpha_counts, Color* out) const {
+    if constexpr (has == Color::length()) {
+      read_rows<R, has>(from, file_, &out->x, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; has == 4 && i < end && !alpha_counts; ++i) out[i][has - 1] = 1;
+      });
+    } else {
+      std::vector<glm::vec<has, R>> rows(from.count);
+      read_rows<R, has>(from, file_, &rows.data()->x, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          out[i] = Color(1);
+          for (glm::length_t k = 0; k < 3; ++k) out[i][k] = rows[i][k];
+        }
+      });
+    }
   }
 
   void add_materials(Mesh& m) {
     std::vector<std::size_t> used;
     constexpr std::uint32_t unknown = ~std::uint32_t{0};
-    std::vector<std::uint32_t> number(document_.objects("materials").size(), unknown);
+    std::vector<std::uint32_t> number(materials_.size(), unknown);
     bool bare = false;
     for (const Part& p : parts_) {
       const auto material = p.primitive->material;
@@ -379,18 +398,19 @@ class Assembler {
       used.push_back(*material);
     }
     if (used.empty()) return;
-    auto set =
-        std::make_shared<MaterialSet>(read_materials(document_, file_, data_, used, textures_, notes_, ctx_));
-    const auto usual = static_cast<std::uint32_t>(set->materials.size());
-    if (bare) set->materials.emplace_back();
+    FileMaterials from = read_materials(document_, file_, data_, used, textures_, notes_, ctx_);
+    const auto usual = static_cast<std::uint32_t>(from.set.materials.size());
+    if (bare) from.set.materials.emplace_back(), from.opacity.push_back(1);
     auto column = Column::make<std::uint32_t>("material", Domain::face, faces_);
     auto* out = column->template values<std::uint32_t>().data();
     for (const Part& p : parts_)
       std::fill_n(out + p.face, p.primitive->triangles(),
                   p.primitive->material ? number[*p.primitive->material] : usual);
+    const std::span<const std::uint32_t> of(out, faces_);
     m.columns.push_back(std::move(column));
-    check_coordinates(*set);
-    m.materials = std::move(set);
+    if (auto clear = transparency_by_material<R>(of, from.opacity)) m.columns.push_back(std::move(clear));
+    check_coordinates(from.set);
+    m.materials = std::make_shared<const MaterialSet>(std::move(from.set));
   }
 
   // A texture whose faces have no coordinates shows one texel.
@@ -424,6 +444,7 @@ class Assembler {
   gltf::File source_;
   Object document_;
   Data data_;
+  std::vector<Object> materials_;
   Notes notes_;
   std::vector<std::vector<Primitive>> primitives_;  // by mesh
   std::vector<Part> parts_;

@@ -32,7 +32,7 @@ struct GltfScene {
 //   fronts), normal (by the transposed inverse; where a primitive has none, of its faces, as the format asks,
 //   and then the column is one of corners), uv, uv1 ... (v up: 1 - the file's), color, material.
 // Positions that no face names stay. Faces without a material have the usual one; materials are those that
-// faces have. Points and lines, tangents, skins, morph targets and animations are left out, and said so once.
+// faces have; column transparency where one blends (runtime/io/gltf_material.h). Points and lines, tangents, skins, morph targets and animations are left out, and said so once.
 //
 // `textures`: whether pictures are read. Throws NodeError("malformed_file", "unsupported_version",
 // "unsupported_extension", "unsafe_path", "too_large") and WorldError("cannot_read_file", "out_of_memory")

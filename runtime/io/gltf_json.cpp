@@ -121,6 +121,11 @@ bool Object::numbers(std::string_view key, double* out, std::size_t n) const {
   return true;
 }
 
+bool Object::has_object(std::string_view key) const {
+  const Tree* j = find(key);
+  return j != nullptr && j->is_object();
+}
+
 std::optional<Object> Object::object(std::string_view key) const {
   const Tree* j = find(key);
   if (j == nullptr) return {};

@@ -30,6 +30,7 @@ class Object {
 
   const std::string& path() const { return path_; }
   bool has(std::string_view key) const { return find(key) != nullptr; }
+  bool has_object(std::string_view key) const;
   std::vector<std::string> keys() const;
 
   // Whole numbers from 0 to 2^53, also where they are written as 3.0.

@@ -3,6 +3,7 @@
 #include "nodes/kernels/elementary.h"
 #include "runtime/buffers/texture.h"
 #include "runtime/core/error.h"
+#include "runtime/io/gltf_material_writer.h"
 #include "runtime/io/image_files.h"
 #include "runtime/io/image_texture.h"
 
@@ -24,10 +25,18 @@ struct Wraps {
   auto operator<=>(const Wraps&) const = default;
 };
 
+// How a picture becomes a texture.
+struct Use {
+  Wraps wraps;
+  bool opaque = true;
+  double alpha_cutoff = 0;
+  auto operator<=>(const Use&) const = default;
+};
+
 // A texture of the document: which picture, repeated how.
 struct Source {
   std::size_t image;
-  Wraps wraps;
+  Use use;
 };
 
 // What one material takes from pictures; filled in when they are decoded.
@@ -36,6 +45,7 @@ struct Wishes {
   std::optional<std::size_t> roughness;  // image whose mean green and blue scale roughness and metalness
   double metallic = 1, roughness_factor = 1;
   glm::dvec3 base{1};
+  double alpha = 1;  // of the base colour
   double dielectric = 0.04;
 };
 
@@ -55,8 +65,7 @@ void set_metallic_roughness(Material& m, const Wishes& w, double mean_metallic, 
 class Reader {
  public:
   Reader(const Object& document, const FilePath& file, Data& data, bool textures, Notes& notes, Context& ctx)
-      : document_(document),
-        file_(file),
+      : file_(file),
         data_(data),
         with_textures_(textures),
         notes_(notes),
@@ -66,12 +75,15 @@ class Reader {
         images_(document.objects("images")),
         samplers_(document.objects("samplers")) {}
 
-  MaterialSet run(std::span<const std::size_t> used) {
-    MaterialSet set;
-    for (const std::size_t i : used) set.materials.push_back(material(materials_[i]));
+  FileMaterials run(std::span<const std::size_t> used) {
+    FileMaterials out;
+    for (const std::size_t i : used) out.set.materials.push_back(material(materials_[i]));
     decode();
-    for (std::size_t i = 0; i < set.materials.size(); ++i) finish(set.materials[i], wishes_[i]);
-    return set;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      finish(out.set.materials[i], wishes_[i]);
+      out.opacity.push_back(wishes_[i].alpha);
+    }
+    return out;
   }
 
  private:
@@ -89,16 +101,18 @@ class Reader {
       m.diffuse = w.base, m.specular = glm::dvec3(0), m.emission = glm::dvec3(0);
       w.roughness = {};
     }
+    alpha(o, w);
+    own_numbers(o, m, w);
     note_the_rest(o);
     wishes_.push_back(w);
     return m;
   }
 
-  static glm::dvec3 color_of(const Object& o, const char* key, const Object& at) {
+  static void base_color(const Object& o, const char* key, Wishes& w) {
     const auto c = o.numbers<4>(key).value_or(std::array{1.0, 1.0, 1.0, 1.0});
     for (const double v : c)
-      if (!(v >= 0 && v <= 1)) at.fail(fmt::format("{} must lie in [0, 1]", key));
-    return {c[0], c[1], c[2]};
+      if (!(v >= 0 && v <= 1)) o.fail(fmt::format("{} must lie in [0, 1]", key));
+    w.base = {c[0], c[1], c[2]}, w.alpha = c[3];
   }
   static double share(const Object& o, const char* key) {
     const double v = o.number(key, 1);
@@ -113,7 +127,7 @@ class Reader {
       w.dielectric = n == 0 ? 1 : (n - 1) * (n - 1) / ((n + 1) * (n + 1));
     }
     if (const auto pbr = o.object("pbrMetallicRoughness")) {
-      w.base = color_of(*pbr, "baseColorFactor", *pbr);
+      base_color(*pbr, "baseColorFactor", w);
       w.metallic = share(*pbr, "metallicFactor"), w.roughness_factor = share(*pbr, "roughnessFactor");
       if (const auto t = pbr->object("baseColorTexture")) use_color_texture(*t, m, w);
       if (const auto t = pbr->object("metallicRoughnessTexture")) {
@@ -130,7 +144,7 @@ class Reader {
   }
 
   void specular_glossiness(const Object& o, Material& m, Wishes& w) {
-    w.base = color_of(o, "diffuseFactor", o);
+    base_color(o, "diffuseFactor", w);
     const auto s = o.numbers<3>("specularFactor").value_or(std::array{1.0, 1.0, 1.0});
     for (const double v : s)
       if (!(v >= 0 && v <= 1)) o.fail_at("specularFactor", "this must lie in [0, 1]");
@@ -157,13 +171,47 @@ class Reader {
       o.fail("its emission is larger than any number");
   }
 
+  // What gltf_material_writer wrote beside the colours that other programs read, if those are still the same.
+  static void own_numbers(const Object& o, Material& m, const Wishes& w) {
+    if (!o.has_object("extras") || !o.object("extras")->has_object("frustum"))
+      return;  // they may be anything
+    const auto ours = o.object("extras")->object("frustum");
+    Material n = m;
+    const auto take = [&](const char* key, glm::dvec3& to) {
+      const auto v = ours->numbers<3>(key);
+      if (!v) return;
+      for (const double c : *v)
+        if (!(c >= 0)) ours->fail_at(key, "this must not be negative");
+      to = {(*v)[0], (*v)[1], (*v)[2]};
+    };
+    take("ambient", n.ambient), take("diffuse", n.diffuse), take("specular", n.specular);
+    n.shininess = ours->number("shininess", m.shininess);
+    if (!(n.shininess >= 0 && n.shininess <= 1e6)) ours->fail_at("shininess", "this must lie in [0, 1e6]");
+    const std::string model = ours->text("model").value_or("blinn");
+    for (const auto& [value, name] : choices(n.model))
+      if (model == name) n.model = value;
+    if (written_base_color(n) == w.base && written_roughness(n) == w.roughness_factor && w.metallic == 0)
+      m = n;
+  }
+
+  void alpha(const Object& o, Wishes& w) {
+    const AlphaMode mode = alpha_mode(o);
+    const double cutoff = o.number("alphaCutoff", 0.5);
+    if (!(cutoff >= 0)) o.fail_at("alphaCutoff", "this must not be negative");
+    if (mode != AlphaMode::mask && o.has("alphaCutoff"))
+      notes_.add(o.path(), "has an alphaCutoff without alphaMode MASK: it counts for nothing");
+    // Whatever the alpha, a cutoff of 0 leaves all of it.
+    const bool tests = mode == AlphaMode::mask && cutoff > 0, reached = cutoff <= w.alpha;
+    if (w.color) {
+      w.color->use.opaque = !tests && mode != AlphaMode::blend;
+      if (tests) w.color->use.alpha_cutoff = reached ? cutoff / w.alpha : 2;
+    }
+    if (mode != AlphaMode::blend) w.alpha = w.color || !tests || reached ? 1 : 0;
+  }
+
   void note_the_rest(const Object& o) {
     if (o.has("normalTexture")) notes_.add(o.path(), "has a normal texture, which is left out");
     if (o.has("occlusionTexture")) notes_.add(o.path(), "has an occlusion texture, which is left out");
-    const std::string alpha = o.text("alphaMode").value_or("OPAQUE");
-    if (alpha != "OPAQUE" && alpha != "MASK" && alpha != "BLEND")
-      o.fail_at("alphaMode", "this must be OPAQUE, MASK or BLEND");
-    if (alpha != "OPAQUE") notes_.add(o.path(), fmt::format("has alphaMode {}, and is opaque here", alpha));
     static const std::set<std::string> known = {"KHR_materials_pbrSpecularGlossiness", "KHR_materials_ior",
                                                 "KHR_materials_emissive_strength", "KHR_materials_unlit"};
     if (const auto extensions = o.object("extensions"))
@@ -222,7 +270,7 @@ class Reader {
     source.image = *image;
     if (const auto s = t.index("sampler", "samplers", samplers_.size())) {
       const Object& sampler = samplers_[*s];
-      source.wraps = {wrap(sampler, "wrapS"), wrap(sampler, "wrapT")};
+      source.use.wraps = {wrap(sampler, "wrapS"), wrap(sampler, "wrapT")};
       if (sampler.integer("magFilter", 9729) == 9728)
         notes_.add(sampler.path(),
                    "asks for nearest texels: how textures are filtered is texture.sample's choice");
@@ -238,7 +286,7 @@ class Reader {
     std::string_view bytes;
     std::string name;
     std::optional<Raster> raster;
-    std::set<Wraps> wraps;
+    std::set<Use> uses;
     bool is_mean = false;
     double mean_green = 1, mean_blue = 1;
   };
@@ -259,7 +307,7 @@ class Reader {
 
   void decode() {
     for (const Wishes& w : wishes_) {
-      if (w.color) pictures_[w.color->image].wraps.insert(w.color->wraps);
+      if (w.color) pictures_[w.color->image].uses.insert(w.color->use);
       if (w.roughness) pictures_[*w.roughness].is_mean = true;
     }
     std::vector<std::pair<const std::size_t, Picture>*> all;
@@ -273,9 +321,13 @@ class Reader {
       if (p.is_mean) find_means(p);
     });
     for (auto* entry : all)
-      for (const Wraps& w : entry->second.wraps)
-        made_[{entry->first, w}] = make_texture(as_srgb(*entry->second.raster),
-                                                {.wrap_u = w.u, .wrap_v = w.v, .opaque = true}, ctx_);
+      for (const Use& use : entry->second.uses)
+        made_[{entry->first, use}] = make_texture(as_srgb(*entry->second.raster),
+                                                  {.wrap_u = use.wraps.u,
+                                                   .wrap_v = use.wraps.v,
+                                                   .alpha_cutoff = use.alpha_cutoff,
+                                                   .opaque = use.opaque},
+                                                  ctx_);
   }
 
   // Whatever a picture says of its colours, base colour is sRGB (glTF 2.0, 3.9.2).
@@ -306,7 +358,7 @@ class Reader {
   }
 
   void finish(Material& m, const Wishes& w) {
-    if (w.color) m.texture = made_.at({w.color->image, w.color->wraps});
+    if (w.color) m.texture = made_.at({w.color->image, w.color->use});
     if (!w.roughness) return;
     const Picture& p = pictures_.at(*w.roughness);
     set_metallic_roughness(m, w, p.mean_blue, p.mean_green);
@@ -314,7 +366,6 @@ class Reader {
       notes_.add(m.name, "is metal, which shows highlights but mirrors no surroundings");
   }
 
-  const Object& document_;
   const FilePath& file_;
   Data& data_;
   bool with_textures_;
@@ -323,13 +374,28 @@ class Reader {
   std::vector<Object> materials_, textures_, images_, samplers_;
   std::vector<Wishes> wishes_;
   std::map<std::size_t, Picture> pictures_;
-  std::map<std::pair<std::size_t, Wraps>, Ref<Texture>> made_;
+  std::map<std::pair<std::size_t, Use>, Ref<Texture>> made_;
 };
 
 }  // namespace
 
-MaterialSet read_materials(const Object& document, const FilePath& file, Data& data,
-                           std::span<const std::size_t> used, bool textures, Notes& notes, Context& ctx) {
+AlphaMode alpha_mode(const Object& material) {
+  const std::string mode = material.text("alphaMode").value_or("OPAQUE");
+  if (mode == "OPAQUE") return AlphaMode::opaque;
+  if (mode == "MASK") return AlphaMode::mask;
+  if (mode != "BLEND") material.fail_at("alphaMode", "this must be OPAQUE, MASK or BLEND");
+  return AlphaMode::blend;
+}
+
+bool has_color_texture(const Object& material) {
+  if (const auto glossy = material.extension("KHR_materials_pbrSpecularGlossiness"))
+    return glossy->has("diffuseTexture");
+  const auto pbr = material.object("pbrMetallicRoughness");
+  return pbr && pbr->has("baseColorTexture");
+}
+
+FileMaterials read_materials(const Object& document, const FilePath& file, Data& data,
+                             std::span<const std::size_t> used, bool textures, Notes& notes, Context& ctx) {
   return Reader(document, file, data, textures, notes, ctx).run(used);
 }
 

@@ -1,8 +1,8 @@
 // Materials of a glTF file as ours.
 #pragma once
 
-#include "runtime/buffers/material.h"
 #include "runtime/core/context.h"
+#include "runtime/io/file_materials.h"
 #include "runtime/io/gltf_data.h"
 #include "runtime/io/gltf_notes.h"
 
@@ -27,9 +27,24 @@ namespace frustum::gltf {
 // counts as the mean of its texels. Unlit materials keep their colour whatever the light. What does not map
 // is noted once a kind.
 //
+// Alpha (glTF 2.0, 3.9.4) is the product of base colour factor, texture and vertex colour:
+//   OPAQUE  none of it counts: textures lose theirs
+//   BLEND   the factor is the opacity of the faces; texture and vertices keep theirs
+//   MASK    the texture's alpha_cutoff is alphaCutoff / factor, for what texture and vertices leave to decide; above 1
+//           (no alpha reaches it) it is 2. Without a texture the factor decides, for all of a face
+//
+// Materials that were written here (gltf_material_writer.h) come back as they were.
+//
 // Pictures are decoded and their pyramids made in parallel, each once however often it is used. Throws
 // NodeError("malformed_file") and WorldError("cannot_read_file") naming the image's element.
-MaterialSet read_materials(const Object& document, const FilePath& file, Data& data,
-                           std::span<const std::size_t> used, bool textures, Notes& notes, Context& ctx);
+FileMaterials read_materials(const Object& document, const FilePath& file, Data& data,
+                             std::span<const std::size_t> used, bool textures, Notes& notes, Context& ctx);
+
+enum class AlphaMode : std::uint8_t { opaque, mask, blend };
+// Throws NodeError("malformed_file") where it is none of the three.
+AlphaMode alpha_mode(const Object& material);
+
+// Whether the file gives the material a base colour texture, read or not.
+bool has_color_texture(const Object& material);
 
 }  // namespace frustum::gltf

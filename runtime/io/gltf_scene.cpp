@@ -57,9 +57,8 @@ glm::dvec3 axis(const Placement& p, glm::length_t column, const Object& node) {
 
 class Walker {
  public:
-  Walker(const Object& document, const FilePath& file, Notes& notes)
+  Walker(const Object& document, Notes& notes)
       : document_(document),
-        file_(file),
         notes_(notes),
         nodes_(document.objects("nodes")),
         cameras_(document.objects("cameras")),
@@ -209,7 +208,6 @@ class Walker {
   }
 
   const Object& document_;
-  const FilePath& file_;
   Notes& notes_;
   std::vector<Object> nodes_, cameras_, lights_;
   std::size_t meshes_, skins_;
@@ -219,8 +217,6 @@ class Walker {
 
 }  // namespace
 
-Flattened flatten(const Object& document, const FilePath& file, Notes& notes) {
-  return Walker(document, file, notes).run();
-}
+Flattened flatten(const Object& document, Notes& notes) { return Walker(document, notes).run(); }
 
 }  // namespace frustum::gltf

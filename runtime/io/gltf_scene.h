@@ -47,6 +47,6 @@ struct Flattened {
 //
 // Throws NodeError("malformed_file") for a node that is its own ancestor or has two parents, and for whatever
 // has no place: a quaternion without length, a matrix that is not affine.
-Flattened flatten(const Object& document, const FilePath& file, Notes& notes);
+Flattened flatten(const Object& document, Notes& notes);
 
 }  // namespace frustum::gltf

@@ -1,4 +1,7 @@
+#include "runtime/buffers/texture.h"
+#include "runtime/buffers/transparency.h"
 #include "runtime/core/error.h"
+#include "runtime/io/gltf_material_writer.h"
 #include "runtime/io/mesh_writers.h"
 
 #include <fmt/format.h>
@@ -19,13 +22,12 @@ static_assert(std::endian::native == std::endian::little, "glTF holds little-end
 
 constexpr int float_component = 5126, uint_component = 5125;
 
-Json color(const glm::dvec3& c) { return {c.x, c.y, c.z}; }
-
 // From a mesh to the JSON and the bytes of a glTF file. Bytes are those of the columns where they are f32
 // already.
 class Writer {
  public:
-  Writer(const Mesh& mesh, const SaveRequest& request) : mesh_(split_corners(mesh)), request_(request) {}
+  Writer(const Mesh& mesh, const SaveRequest& request)
+      : mesh_(with_materials(split_corners(mesh))), request_(request) {}
 
   void run(bool binary, PartialFile& to) {
     describe();
@@ -36,14 +38,38 @@ class Writer {
   }
 
  private:
+  // Faces that are seen through need a material that says so, and faces without a number have the first one.
+  static Mesh with_materials(Mesh mesh) {
+    const bool some = mesh.materials && !mesh.materials->materials.empty();
+    const auto opaque = opaque_faces(mesh);
+    const bool needs =
+        mesh.faces() != 0 && (opaque.empty() || std::find(opaque.begin(), opaque.end(), 0) != opaque.end());
+    if (mesh.faces() == 0 || (!some && !needs)) return mesh;
+    if (!some) mesh.materials = std::make_shared<const MaterialSet>(MaterialSet{{Material{}}});
+    if (some && mesh.find("material") != nullptr) return mesh;
+    auto column = Column::make<std::uint32_t>("material", Domain::face, mesh.faces());
+    std::fill_n(column->values<std::uint32_t>().data(), mesh.faces(), 0u);
+    return mesh.with(std::move(column));
+  }
+
   // ----- numbers
 
-  std::size_t add_view(std::string_view bytes, int target) {
-    views_.push_back(
-        {{"buffer", 0}, {"byteOffset", size_}, {"byteLength", bytes.size()}, {"target", target}});
+  std::size_t add_view(std::string_view bytes, std::optional<int> target) {
+    Json view = {{"buffer", 0}, {"byteOffset", size_}, {"byteLength", bytes.size()}};
+    if (target) view["target"] = *target;
+    views_.push_back(std::move(view));
     pieces_.push_back(bytes);
-    size_ += bytes.size();  // a multiple of 4: all numbers are 4 bytes
+    size_ += bytes.size();
+    if (size_ % 4 == 0) return views_.size() - 1;  // numbers are of 4 bytes, pictures of any
+    pieces_.push_back(std::string_view("\0\0\0", 4 - size_ % 4));
+    size_ += 4 - size_ % 4;
     return views_.size() - 1;
+  }
+
+  std::size_t add_picture(std::string png) {
+    auto kept = std::make_shared<std::string>(std::move(png));
+    kept_.push_back(kept);
+    return add_view(*kept, std::nullopt);
   }
 
   template <class T>
@@ -118,7 +144,7 @@ class Writer {
       const bool is_real = c->kind() == NumberKind::f32 || c->kind() == NumberKind::f64;
       if (c->domain() == Domain::vertex && is_real)
         out[attribute_name(*c)] = add_column(*c, is_coordinates(*c), c->name() == "position");
-      else if (c->name() != "triangle" && c->name() != "material")
+      else if (c->name() != "triangle" && c->name() != "material" && c->name() != transparency_column)
         warn_left_out(request_, "glTF", fmt::format("column '{}'", c->name()));
     }
     return out;
@@ -154,24 +180,29 @@ class Writer {
     primitives_.push_back(std::move(primitive));
   }
 
-  Json material(const Material& m) {
-    const auto clamped = [](double v) { return std::clamp(v, 0.0, 1.0); };
-    if (m.texture) textures_ = true;
-    Json base = {clamped(m.diffuse.x), clamped(m.diffuse.y), clamped(m.diffuse.z), 1};
-    Json out = {{"name", m.name},
-                {"pbrMetallicRoughness",
-                 {{"baseColorFactor", std::move(base)},
-                  {"metallicFactor", 0},
-                  {"roughnessFactor", std::sqrt(std::sqrt(2 / (std::max(m.shininess, 0.0) + 2)))}}},
-                {"extras",
-                 {{"frustum",
-                   {{"ambient", color(m.ambient)},
-                    {"diffuse", color(m.diffuse)},
-                    {"specular", color(m.specular)},
-                    {"shininess", m.shininess}}}}}};
-    if (m.two_sided) out["doubleSided"] = true;
-    if (m.emission != glm::dvec3(0))
-      out["emissiveFactor"] = {clamped(m.emission.x), clamped(m.emission.y), clamped(m.emission.z)};
+  // By material that of its faces; nothing where all of them are opaque. glTF has one for each material.
+  std::vector<std::optional<double>> opacities() const {
+    const auto& materials = mesh_.materials->materials;
+    const auto of = mesh_.at("material").values<std::uint32_t>();
+    const auto opaque = opaque_faces(mesh_);
+    const auto opacity = opacities_of<double>(mesh_);
+    std::vector<std::optional<double>> out(materials.size()), first(materials.size());
+    std::vector<std::uint8_t> differs(materials.size(), 0);
+    for (std::size_t f = 0; f < of.size(); ++f) {
+      const double here = opacity.empty() ? 1 : opacity[f];
+      if (!first[of[f]]) first[of[f]] = here;
+      if (*first[of[f]] != here) differs[of[f]] = 1;
+      if (opaque.empty() || opaque[f] == 0) out[of[f]] = first[of[f]];
+    }
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+      const auto* pyramid =
+          materials[m].texture ? std::get_if<MipPyramid>(&materials[m].texture->source) : nullptr;
+      const bool masked = pyramid != nullptr && pyramid->alpha_cutoff > 0 && out[m] && *out[m] < 1;
+      if (differs[m] == 0 && !masked) continue;
+      warn_left_out(request_, "glTF",
+                    fmt::format("the opacities of faces of material '{}'", materials[m].name));
+      if (out[m]) out[m] = 1;
+    }
     return out;
   }
 
@@ -193,8 +224,9 @@ class Writer {
     json_["nodes"] = {{{"mesh", 0}}};
     json_["meshes"] = {{{"primitives", primitives_}}};
     if (mesh_.materials && mesh_.find("material") != nullptr) {
-      for (const Material& m : mesh_.materials->materials) json_["materials"].push_back(material(m));
-      if (textures_) warn_left_out(request_, "glTF as written here", "textures");
+      gltf::write_materials(
+          mesh_.materials->materials, opacities(),
+          [this](std::string png) { return add_picture(std::move(png)); }, request_, json_);
     }
     json_["accessors"] = accessors_;
     json_["bufferViews"] = views_;
@@ -267,7 +299,6 @@ class Writer {
   std::vector<std::string_view> pieces_;
   std::vector<std::shared_ptr<void>> kept_;
   std::size_t size_ = 0;
-  bool textures_ = false;
 };
 
 }  // namespace

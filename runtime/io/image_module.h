@@ -14,6 +14,8 @@ class ImageModule {
   virtual ImageFile read(const std::string& path, std::string_view name, int subimage) const = 0;
   virtual ImageFile read_bytes(std::string_view bytes, std::string_view name) const = 0;
   virtual std::unique_ptr<Sink> open(const SinkRequest&, const SinkPlan&) const = 0;
+  // A PNG in memory, of planes R G B or R G B A of f32 in sRGB, straight; 8 or 16 bits a channel.
+  virtual std::string encode_png(const Raster&, int bits, std::string_view name) const = 0;
   virtual RemoveTemporaryFiles temporary_files() const = 0;  // of the module's own copy
   virtual Fragments read_deep(const std::string& path, std::string_view name, int part,
                               const std::function<void(std::uint64_t bytes)>& claim) const = 0;

@@ -18,9 +18,9 @@ namespace frustum {
 //   obj         text, decimals that read back to the same bits: position, color (sRGB, as other programs
 //               write it), uv, normal and names of materials; texture and colours of materials are left out
 //   glb, gltf   glTF 2.0, one primitive a material: real vertex columns as f32 (double is rounded), texture
-//               coordinates turned upside down as glTF has them; materials by their colours, metallic 0 and
-//               roughness (2 / (shininess + 2))^(1/4), with the numbers of ours in "extras"; textures are
-//               left out. A .gltf holds its bytes inside, as base64
+//               coordinates turned upside down as glTF has them; materials with their textures and what of
+//               them is seen through, as runtime/io/gltf_material_writer.h says. Both are one file each: a .gltf
+//               holds its numbers and pictures inside, as base64
 //
 // ply and gltf have values of vertices only: a mesh with columns of corners is cut first (split_corners).
 // Throws NodeError("format_cannot_hold").

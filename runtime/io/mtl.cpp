@@ -88,6 +88,11 @@ class Materials {
     return out;
   }
 
+  double opacity(std::string_view name) const {
+    const auto at = library_.find(name);
+    return at == library_.end() ? 1 : at->second.d.value_or(1 - at->second.tr.value_or(0));
+  }
+
   void finish(bool any_library) {
     if (missing_ != 0 && any_library)
       warn("missing_material",
@@ -129,13 +134,16 @@ class Materials {
 
 }  // namespace
 
-MaterialSet read_materials(std::span<const std::string_view> libraries, const FilePath& obj,
-                           std::span<const std::string_view> names, bool textured, Context& ctx) {
+FileMaterials read_materials(std::span<const std::string_view> libraries, const FilePath& obj,
+                             std::span<const std::string_view> names, bool textured, Context& ctx) {
   Materials materials(obj, textured, ctx);
   for (const std::string_view line : libraries)
     for (const std::string_view name : file_names(line, obj)) materials.read(name);
-  MaterialSet out;
-  for (const std::string_view name : names) out.materials.push_back(materials.find(name));
+  FileMaterials out;
+  for (const std::string_view name : names) {
+    out.set.materials.push_back(materials.find(name));
+    out.opacity.push_back(materials.opacity(name));
+  }
   materials.finish(!libraries.empty());
   return out;
 }

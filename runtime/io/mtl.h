@@ -1,9 +1,9 @@
 // Materials of OBJ files.
 #pragma once
 
-#include "runtime/buffers/material.h"
 #include "runtime/core/context.h"
 #include "runtime/core/param.h"
+#include "runtime/io/file_materials.h"
 
 #include <functional>
 #include <span>
@@ -26,14 +26,15 @@ namespace frustum {
 // illum         1: no specular; 2, and none: Blinn; others are reported
 // map_Kd        texture in its file's own space, its alpha left out; -s and -o scale and move it, -clamp on
 //               ends it at its borders, -mm and the rest are reported
-// d, Tr, map_* and whatever else has no counterpart is counted (warning "statements_skipped").
+// d, Tr        opacity d, or 1 - Tr where there is no d (programs do not agree on Tr); outside [0, 1] reported
+// map_* and whatever else has no counterpart is counted (warning "statements_skipped").
 //
 // A file that is missing, absolute or climbs out of the folder of the OBJ is not read and said so: warnings
 // "missing_material_file", "missing_texture_file", "unsafe_path"; "missing_material" for names. A file named
 // twice is read once. Throws NodeError("malformed_file") with file:line for what is no number or no MTL at
 // all.
-MaterialSet read_materials(std::span<const std::string_view> libraries, const FilePath& obj,
-                           std::span<const std::string_view> names, bool textured, Context& ctx);
+FileMaterials read_materials(std::span<const std::string_view> libraries, const FilePath& obj,
+                             std::span<const std::string_view> names, bool textured, Context& ctx);
 
 // Calls `visit` for every file that read_materials could read for the OBJ text: for keys of caches.
 void visit_obj_files(std::string_view text, const FilePath& obj,

@@ -102,7 +102,8 @@ class Parser {
     Cursor ahead = in_;
     if (ahead.word() == "-halo") return skip("d -halo");
     const double v = number();
-    if (v != (key == "d" ? 1 : 0)) skip(fmt::format("{} {:.3g}", key, v));
+    if (!(v >= 0 && v <= 1)) return skip(fmt::format("{} {:.3g}", key, v));
+    (key == "d" ? now_->d : now_->tr) = v;
   }
 
   // Up to three numbers, the last of which are left out; false where the first is none.

@@ -17,7 +17,7 @@ namespace frustum::mtl {
 // A material as its file says it.
 struct Written {
   std::optional<glm::dvec3> kd, ka, ks, ke;
-  std::optional<double> ns;
+  std::optional<double> ns, d, tr;  // d and tr within [0, 1]
   int illum = 2;
   std::string map_kd;
   std::string map_place;  // file:line

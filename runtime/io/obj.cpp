@@ -260,11 +260,14 @@ class Assembler {
     obj::FaceNames names = obj::name_faces<R>(chunks_, total_.triangles);
     if (names.group) m.columns.push_back(std::move(names.group));
     if (!names.material) return;
-    m.columns.push_back(std::move(names.material));
+    const Ref<Column> material = names.material;
+    m.columns.push_back(material);
     std::vector<std::string_view> libraries;
     for (const auto& c : chunks_) libraries.insert(libraries.end(), c.libraries.begin(), c.libraries.end());
-    m.materials = std::make_shared<MaterialSet>(
-        read_materials(libraries, file_, names.materials, m.find("uv") != nullptr, ctx_));
+    FileMaterials from = read_materials(libraries, file_, names.materials, m.find("uv") != nullptr, ctx_);
+    if (auto clear = transparency_by_material<R>(material->values<std::uint32_t>(), from.opacity))
+      m.columns.push_back(std::move(clear));
+    m.materials = std::make_shared<const MaterialSet>(std::move(from.set));
   }
 
   void report() {

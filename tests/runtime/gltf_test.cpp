@@ -120,6 +120,9 @@ TEST(Gltf, StridesNormalisedIntegersAndSparseElementsGiveTheirValues) {
       g.accessor<std::uint8_t>({255, 0, 51, 102, 0, 0, 0, 255, 255, 255, 255, 0}, "VEC4", true);
   g.node({{"mesh", g.mesh({{"attributes",
                             {{"POSITION", 0}, {"TEXCOORD_0", 1}, {"TEXCOORD_3", 1}, {"COLOR_0", color}}}})}});
+  EXPECT_EQ(column3(read(g.glb()).mesh, "color")[0], glm::vec3(1, 0, 0.2F)) << "nothing blends";
+  g.document["materials"] = {{{"alphaMode", "BLEND"}}};
+  g.document["meshes"][0]["primitives"][0]["material"] = 0;
   const Mesh m = read(g.glb()).mesh;
   EXPECT_EQ(column3(m, "position"), (std::vector<glm::vec3>{{0, 2, 3}, {-1, -2, -3}, {2, 2, 3}}));
   const auto uv = m.at("uv").values<glm::vec2>();
@@ -218,7 +221,7 @@ TEST(Gltf, AMaterialKeepsItsReflectance) {
 TEST(Gltf, WhatDoesNotMapIsSaidOnceAKind) {
   std::string said;
   const Material m = material_of({{"doubleSided", true},
-                                  {"alphaMode", "BLEND"},
+                                  {"alphaCutoff", 0.5},
                                   {"emissiveFactor", {0.5, 0, 0}},
                                   {"pbrMetallicRoughness", {{"metallicFactor", 0}}},
                                   {"normalTexture", {{"index", 0}}},
@@ -229,8 +232,8 @@ TEST(Gltf, WhatDoesNotMapIsSaidOnceAKind) {
   EXPECT_TRUE(m.two_sided);
   EXPECT_EQ(m.emission, glm::dvec3(2, 0, 0));
   for (const char* part :
-       {"materials[0] has alphaMode BLEND, and is opaque here", "has a normal texture, which is left out",
-        "has KHR_materials_clearcoat, which is left out"})
+       {"materials[0] has an alphaCutoff without alphaMode MASK: it counts for nothing",
+        "has a normal texture, which is left out", "has KHR_materials_clearcoat, which is left out"})
     EXPECT_THAT(said, HasSubstr(part));
   EXPECT_THAT(said, testing::Not(HasSubstr("emissive_strength")));
 }

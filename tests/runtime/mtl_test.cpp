@@ -103,9 +103,20 @@ TEST_F(Obj, IlluminationWithoutLobesHasNoSpecular) {
 
 TEST_F(Obj, WhatHasNoCounterpartIsCounted) {
   material(
-      "newmtl one\nd 0.5\nTr 0.5\nmap_Bump -bm 1 b.png\nmap_Ks k.png\nKd spectral f.rfl\nnewmtl two\nd "
-      "0.5\n");
-  EXPECT_EQ(messages, "a.mtl: skipped 1 x Kd spectral, 1 x Tr 0.5, 2 x d 0.5, 1 x map_Bump, 1 x map_Ks\n");
+      "newmtl one\nd 1.5\nTr -1\nd -halo 0.5\nmap_Bump -bm 1 b.png\nmap_Ks k.png\nKd spectral f.rfl\nnewmtl "
+      "two\nmap_Ks k.png\n");
+  EXPECT_EQ(messages,
+            "a.mtl: skipped 1 x Kd spectral, 1 x Tr -1, 1 x d -halo, 1 x d 1.5, 1 x map_Bump, 2 x map_Ks\n");
+  EXPECT_EQ(mesh.find("transparency"), nullptr);
+}
+
+TEST_F(Obj, FacesAreAsOpaqueAsTheirMaterial) {
+  EXPECT_EQ(read_mtl("newmtl one\nd 1\n").find("transparency"), nullptr);
+  EXPECT_EQ(read_mtl("newmtl one\nTr 1\nd 1\n").find("transparency"), nullptr)
+      << "programs do not agree on Tr";
+  EXPECT_THAT(values<float>(read_mtl("newmtl one\nd 0.25\n"), "transparency"), ElementsAre(0.75F));
+  EXPECT_THAT(values<float>(read_mtl("newmtl one\nTr 0.25\n"), "transparency"), ElementsAre(0.25F));
+  EXPECT_EQ(problem("newmtl one\nd clear\n"), "a.mtl:2: 'clear' is not a finite number");
 }
 
 TEST_F(Obj, TexturesAreReadOnceAndPlaced) {

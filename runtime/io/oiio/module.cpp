@@ -17,9 +17,12 @@ class OiioModule : public frustum::ImageModule {
                                       const frustum::SinkPlan& plan) const override {
     return frustum::oiio::open(request, plan);
   }
+  std::string encode_png(const frustum::Raster& picture, int bits, std::string_view name) const override {
+    return frustum::oiio::encode_png(picture, bits, name);
+  }
   frustum::RemoveTemporaryFiles temporary_files() const override { return frustum::remove_temporary_files; }
   frustum::Fragments read_deep(const std::string& path, std::string_view name, int part,
-                              const std::function<void(std::uint64_t bytes)>& claim) const override {
+                               const std::function<void(std::uint64_t bytes)>& claim) const override {
     return frustum::oiio::read_deep(path, name, part, claim);
   }
   void write_deep(const frustum::Fragments& fragments, const frustum::SaveRequest& request) const override {

@@ -293,6 +293,33 @@ class FileSink : public Sink {
 
 }  // namespace
 
+std::string encode_png(const Raster& picture, int bits, std::string_view name) {
+  const Rect w = picture.frame().window;
+  const int channels = static_cast<int>(picture.frame().planes.size());
+  const Type type = bits == 8 ? Type::u8 : Type::u16;
+  lib::ImageSpec spec(w.width(), w.height(), channels, type_desc(type));
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("DateTime", "");
+  if (channels == 4) spec.alpha_channel = 3, spec.attribute("oiio:UnassociatedAlpha", 1);
+  const std::size_t pixel = bytes_of(type) * static_cast<std::size_t>(channels);
+  std::vector<std::byte> data(pixel * static_cast<std::size_t>(w.area()));
+  for (int y = w.y0; y < w.y1; ++y)
+    for (int c = 0; c < channels; ++c) {
+      const float* from = picture.view().row<const float>(c, 0, y);
+      std::byte* to = data.data() + pixel * static_cast<std::size_t>((y - w.y0) * w.width()) +
+                      bytes_of(type) * static_cast<std::size_t>(c);
+      for (int x = 0; x < w.width(); ++x, to += pixel) store_as(type, from[x], to);
+    }
+  std::vector<unsigned char> bytes;
+  lib::Filesystem::IOVecOutput stream(bytes);
+  const auto out = lib::ImageOutput::create("png");
+  if (!out || !out->set_ioproxy(&stream) || !out->open("texture.png", spec) ||
+      !out->write_image(type_desc(type), data.data()) || !out->close())
+    throw WorldError("cannot_write_file", fmt::format("{}: cannot make a PNG of a texture: {}", name,
+                                                      out ? out->geterror() : lib::geterror()));
+  return {bytes.begin(), bytes.end()};
+}
+
 std::unique_ptr<Sink> open(const SinkRequest& request, const SinkPlan& plan) {
   try {
     return std::make_unique<FileSink>(request, plan);

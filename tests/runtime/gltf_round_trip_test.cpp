@@ -1,0 +1,183 @@
+// Meshes with materials and textures, written as glTF and read again.
+#include "runtime/buffers/mesh.h"
+#include "runtime/buffers/texture.h"
+#include "runtime/io/buffer_files.h"
+#include "runtime/io/file_bytes.h"
+#include "runtime/io/gltf.h"
+#include "runtime/io/texture_png.h"
+#include "tests/support/meshes.h"
+#include "tests/support/temp_file.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <numbers>
+
+namespace frustum {
+namespace {
+
+using testing::ElementsAre;
+
+// Texels that 8 bits of sRGB hold: 0, 1, and others after a first way there and back.
+Ref<Texture> picture(int width, int height, bool opaque, Wrap u = Wrap::repeat, Wrap v = Wrap::repeat,
+                     double alpha_cutoff = 0) {
+  MipPyramid p{.levels = {}, .wrap_u = u, .wrap_v = v, .alpha_cutoff = alpha_cutoff};
+  MipPyramid::Level level{width, height, {}};
+  for (int i = 0; i < width * height; ++i) {
+    const float a = opaque ? 1.0F : static_cast<float>(i % 4) / 3;  // 0, 85, 170 and 255 of 255
+    level.rgba.insert(level.rgba.end(), {i % 2 == 0 ? a : 0.0F, i % 3 == 0 ? a : 0.0F, a, a});
+  }
+  p.levels.push_back(std::move(level));
+  return std::make_shared<const Texture>(std::move(p));
+}
+
+Mesh strip(std::vector<Material> materials) {
+  const auto n = static_cast<std::uint32_t>(materials.size());
+  std::vector<glm::vec3> position;
+  std::vector<glm::uvec3> triangle;
+  std::vector<glm::vec2> uv;
+  std::vector<std::uint32_t> number;
+  for (std::uint32_t m = 0; m < n; ++m) {
+    const auto x = static_cast<float>(m);
+    for (const glm::vec2 c : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)})
+      position.emplace_back(x + c.x, c.y, 0), uv.push_back(c);
+    triangle.emplace_back(3 * m, 3 * m + 1, 3 * m + 2), number.push_back(m);
+  }
+  Mesh mesh = test::mesh_of(position, triangle, Space::world);
+  const std::vector<glm::vec3> normal(position.size(), glm::vec3(0, 0, 1));
+  mesh.columns.push_back(Column::make<glm::vec3>("normal", Domain::vertex, normal, Space::world));
+  for (const char* name : {"uv", "uv1"})
+    mesh.columns.push_back(Column::make<glm::vec2>(name, Domain::vertex, uv));
+  mesh.columns.push_back(Column::make<std::uint32_t>("material", Domain::face, number));
+  mesh.materials = std::make_shared<const MaterialSet>(MaterialSet{std::move(materials)});
+  EXPECT_EQ(mesh.validate(), "");
+  return mesh;
+}
+
+class RoundTrip : public testing::TestWithParam<const char*> {
+ protected:
+  Mesh there_and_back(const Mesh& mesh) {
+    const std::string path = folder_.file(fmt::format("m.{}", GetParam()));
+    warnings_.clear();
+    save_buffer_file(Ref<Mesh>(test::shared(mesh)),
+                     {.path = path, .metadata = {}, .warn = [&](std::string_view, const std::string& what) {
+                        warnings_.push_back(what);
+                      }});
+    Context ctx;
+    const FileBytes bytes({path, path});
+    Mesh back = read_gltf(bytes.text(), {path, path}, true, ctx).mesh;
+    for (const auto& [code, what] : ctx.warnings()) ADD_FAILURE() << code << ": " << what;
+    EXPECT_EQ(back.validate(), "");
+    return back;
+  }
+  test::TempFolder folder_;
+  std::vector<std::string> warnings_;
+};
+
+void expect_same(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
+  for (glm::length_t k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], tolerance);
+}
+
+void expect_same(const Material& a, const Material& b) {
+  SCOPED_TRACE(a.name);
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.model, b.model);
+  expect_same(a.ambient, b.ambient, 0), expect_same(a.diffuse, b.diffuse, 0);
+  expect_same(a.specular, b.specular, 0), expect_same(a.emission, b.emission, 1e-15);
+  EXPECT_EQ(a.shininess, b.shininess);
+  EXPECT_EQ(a.two_sided, b.two_sided);
+  EXPECT_EQ(a.unlit, b.unlit);
+  EXPECT_EQ(a.uv_set, b.uv_set);
+  for (glm::length_t c = 0; c < 3; ++c)
+    for (glm::length_t r = 0; r < 3; ++r)
+      EXPECT_NEAR(a.texture_from_uv[c][r], b.texture_from_uv[c][r], 1e-14) << c << r;
+  ASSERT_EQ(a.texture == nullptr, b.texture == nullptr);
+  if (!a.texture) return;
+  const auto &from = std::get<MipPyramid>(a.texture->source), &to = std::get<MipPyramid>(b.texture->source);
+  EXPECT_EQ(from.wrap_u, to.wrap_u);
+  EXPECT_EQ(from.wrap_v, to.wrap_v);
+  EXPECT_EQ(from.alpha_cutoff, to.alpha_cutoff);
+  ASSERT_EQ(from.levels[0].width, to.levels[0].width);
+  ASSERT_EQ(from.levels[0].height, to.levels[0].height);
+  for (std::size_t i = 0; i < from.levels[0].rgba.size(); ++i)
+    ASSERT_NEAR(from.levels[0].rgba[i], to.levels[0].rgba[i], 1e-6) << i;
+}
+
+TEST_P(RoundTrip, MaterialsComeBack) {
+  const Ref<Texture> shared = picture(5, 3, true, Wrap::clamp, Wrap::mirror);
+  Material turned{.name = "turned", .texture = shared, .uv_set = 1};
+  const double c = std::cos(0.4), s = std::sin(0.4);
+  turned.texture_from_uv[0] = {2 * c, 2 * s, 0};
+  turned.texture_from_uv[1] = {-0.5 * s, 0.5 * c, 0};
+  turned.texture_from_uv[2] = {0.25, -3, 1};
+  const Mesh mesh = strip(
+      {Material{.name = "clay",
+                .model = Reflection::phong,
+                .ambient{0.5, 0.5, 0.5},
+                .diffuse{0.7, 0.3, 0.2},
+                .specular{0.4, 0.4, 0.4},
+                .shininess = 60},
+       Material{.name = "lamp", .emission{4, 2, 0}},
+       Material{.name = "sign", .diffuse{0.2, 0.3, 0.4}, .two_sided = true, .unlit = true, .texture = shared},
+       Material{.name = "leaf", .texture = picture(4, 4, false, Wrap::repeat, Wrap::repeat, 0.3)}, turned,
+       Material{.name = "matt", .model = Reflection::lambert, .diffuse{1, 1, 1}}});
+  const Mesh back = there_and_back(mesh);
+  EXPECT_THAT(warnings_, ElementsAre());
+  ASSERT_EQ(back.materials->materials.size(), mesh.materials->materials.size());
+  for (std::size_t i = 0; i < mesh.materials->materials.size(); ++i)
+    expect_same(mesh.materials->materials[i], back.materials->materials[i]);
+  EXPECT_EQ(back.materials->materials[2].texture, back.materials->materials[4].texture) << "written once";
+  for (std::size_t f = 0; f < mesh.faces(); ++f)
+    for (glm::length_t c = 0; c < 3; ++c)
+      EXPECT_EQ(back.at("position").values<glm::vec3>()[back.triangles()[f][c]],
+                mesh.at("position").values<glm::vec3>()[mesh.triangles()[f][c]]);
+}
+
+TEST_P(RoundTrip, OpacityComesBack) {
+  Mesh mesh = strip({Material{.name = "wood"}, Material{.name = "glass"},
+                     Material{.name = "veil", .texture = picture(4, 4, false)}});
+  const std::vector<float> clear{0, 0.75F, 0};
+  mesh.columns.push_back(Column::make<float>("transparency", Domain::face, clear));
+  const Mesh back = there_and_back(mesh);
+  EXPECT_THAT(warnings_, ElementsAre());
+  EXPECT_EQ(test::column<float>(back, "transparency"), clear);
+  expect_same(mesh.materials->materials[2], back.materials->materials[2]);
+}
+
+TEST_P(RoundTrip, VerticesThatAreSeenThroughGetAMaterialThatSaysSo) {
+  Mesh mesh = test::mesh_of<glm::vec3>({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, Space::world);
+  const std::vector<glm::vec4> color{{1, 0, 0, 0.5}, {1, 1, 0, 0.25}, {1, 1, 1, 1}};
+  mesh.columns.push_back(Column::make<glm::vec4>("color", Domain::vertex, color));
+  const std::vector<glm::vec3> normal(3, glm::vec3(0, 0, 1));
+  mesh.columns.push_back(Column::make<glm::vec3>("normal", Domain::vertex, normal));
+  EXPECT_EQ(test::column<glm::vec4>(there_and_back(mesh), "color"), color);
+}
+
+TEST_P(RoundTrip, WhatGltfHasNoPlaceForIsNamed) {
+  Material shear{.name = "sheared", .texture = picture(2, 2, true)};
+  shear.texture_from_uv[1] = {0.5, 1, 0};
+  Mesh mesh = strip({shear, Material{.name = "board", .texture = std::make_shared<const Texture>(Checker{})},
+                     Material{.name = "mixed"}});
+  there_and_back(mesh);
+  EXPECT_THAT(warnings_, ElementsAre("glTF has no place for the shear of the texture of material 'sheared'",
+                                     "glTF has no place for the checkerboard of material 'board'"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Forms, RoundTrip, testing::Values("glb", "gltf"),
+                         [](const auto& form) { return std::string(form.param); });
+
+TEST(TexturePng, TakesSixteenBitsWhereEightDoNotDo) {
+  MipPyramid p;
+  p.levels.push_back({1, 1, {0.2F, 0.5F, 0.7F, 1}});
+  const TexturePng fine = texture_png(p, "t");
+  EXPECT_EQ(fine.bytes[24], 16) << "bit depth in IHDR";
+  EXPECT_FALSE(fine.clipped);
+  p.levels[0].rgba = {1, 0, 1, 1};
+  EXPECT_EQ(texture_png(p, "t").bytes[24], 8);
+  p.levels[0].rgba = {2, 0, 1, 1};
+  EXPECT_TRUE(texture_png(p, "t").clipped);
+}
+
+}  // namespace
+}  // namespace frustum
