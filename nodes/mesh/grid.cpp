@@ -24,6 +24,7 @@ Outputs run(const Inputs&, const Params& p, Context& ctx) {
   ctx.real([&]<class R>() {
     using Point = glm::vec<3, R>;
     const std::size_t n = shape.vertices();
+    ctx.claim(n * (2 * sizeof(Point) + sizeof(glm::vec<2, R>)) + shape.faces() * sizeof(glm::uvec3));
     auto triangle = Column::make<glm::uvec3>("triangle", Domain::face, shape.faces());
     auto position = Column::make<Point>("position", Domain::vertex, n, Space::object);
     auto normal = Column::make<Point>("normal", Domain::vertex, n, Space::object);

@@ -84,6 +84,9 @@ class Copies {
   template <class R>
   Mesh made(Context& ctx) const {
     Mesh out;
+    for (const auto& c : mesh_.columns)
+      if (c->domain() != Domain::mesh) ctx.claim(std::uint64_t{row_bytes(*c)} * c->rows() * maps_.size());
+    ctx.claim(sizeof(std::uint32_t) * mesh_.faces() * maps_.size());
     for (const auto& c : mesh_.columns) {
       ctx.poll();
       if (c->domain() == Domain::mesh)

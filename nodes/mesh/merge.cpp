@@ -129,6 +129,7 @@ class Merge {
       if (s.domain == Domain::mesh && part->find(s.name) != nullptr) return part->share(s.name);
       rows += rows_of(*part, s.domain);
     }
+    ctx.claim(std::uint64_t{rows} * static_cast<std::uint64_t>(s.width) * bytes_of(s.kind));
     auto to = std::make_shared<Column>(s.name, s.domain, s.kind, s.width, rows, s.space);
     std::size_t at = 0, filled = 0;
     std::uint32_t vertex = 0, origin = 0;

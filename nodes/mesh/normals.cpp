@@ -36,15 +36,17 @@ Mesh with_normals(const Mesh& mesh, const Params& p, Context& ctx) {
   using Point = glm::vec<3, R>;
   const auto position = mesh.real<R>("position");
   const kernels::Triangles<R> triangles{position->template values<Point>(), mesh.triangles()};
+  const bool smooth = p.crease >= 180;
+  const std::size_t rows = smooth ? mesh.vertices() : 3 * mesh.faces();
+  // The normals, the place of each vertex, and what sorts them or the corners around each (2 numbers).
+  ctx.claim(rows * sizeof(Point) + sizeof(std::uint32_t) * (mesh.vertices() + 2 * 3 * mesh.faces()));
   std::vector<std::uint32_t> place(mesh.vertices());
   if (p.join)
     place = kernels::equal_points<R>(triangles.position);
   else
     std::iota(place.begin(), place.end(), 0U);
   ctx.poll();
-  const bool smooth = p.crease >= 180;
-  auto normal = Column::make<Point>("normal", smooth ? Domain::vertex : Domain::corner,
-                                    smooth ? mesh.vertices() : 3 * mesh.faces(), mesh.space());
+  auto normal = Column::make<Point>("normal", smooth ? Domain::vertex : Domain::corner, rows, mesh.space());
   const auto to = normal->template values<Point>();
   const std::size_t without =
       smooth ? mesh::vertex_normals<R>(triangles, place, p.weight, to)

@@ -1,7 +1,7 @@
 #include "nodes/mesh/sphere.h"
 
 #include "nodes/mesh.h"
-#include "runtime/buffers/mesh.h"
+#include "runtime/buffers/round_mesh.h"
 #include "runtime/core/node_type.h"
 
 namespace frustum {
@@ -19,22 +19,14 @@ struct Outputs {
 Outputs run(const Inputs&, const Params& p, Context& ctx) {
   const mesh::SphereShape shape{p.radius, static_cast<std::uint32_t>(p.segments),
                                 static_cast<std::uint32_t>(p.rings)};
-  auto out = std::make_shared<Mesh>();
-  ctx.real([&]<class R>() {
-    using Point = glm::vec<3, R>;
-    using Uv = glm::vec<2, R>;
-    const std::size_t n = shape.vertices(), faces = shape.faces();
-    auto triangle = Column::make<glm::uvec3>("triangle", Domain::face, faces);
-    auto position = Column::make<Point>("position", Domain::vertex, n, Space::object);
-    auto normal = Column::make<Point>("normal", Domain::vertex, n, Space::object);
-    auto uv = Column::make<Uv>("uv", Domain::corner, 3 * faces);
-    mesh::sphere_vertices<R>(shape, position->template values<Point>(), normal->template values<Point>());
-    mesh::sphere_faces<R>(shape, triangle->values<glm::uvec3>(), uv->template values<Uv>());
-    out->columns = {triangle, position, normal, uv};
-  });
-  out->closed = true;
-  ctx.count("triangles", out->faces());
-  return {std::move(out)};
+  return {make_round_mesh(
+      shape, ctx,
+      [&]<class P>(std::span<P> position, std::span<P> normal) {
+        mesh::sphere_vertices<typename P::value_type>(shape, position, normal);
+      },
+      [&]<class Uv>(std::span<glm::uvec3> triangle, std::span<Uv> uv) {
+        mesh::sphere_faces<typename Uv::value_type>(shape, triangle, uv);
+      })};
 }
 
 }  // namespace

@@ -62,7 +62,19 @@ std::vector<std::uint32_t> places_of(const Mesh& mesh, double tolerance, const C
   });
 }
 
+// Columns on corners, and then the vertex and face columns with what is kept: at most as much as there was. Three
+// numbers a vertex join them.
+std::uint64_t bytes_of_welding(const Mesh& mesh, Attributes attributes) {
+  std::uint64_t sum = 3 * sizeof(std::uint32_t) * mesh.vertices();
+  for (const auto& c : mesh.columns) {
+    sum += c->bytes();
+    if (attributes == Attributes::corners && is_vertex_attribute(*c)) sum += 3 * row_bytes(*c) * mesh.faces();
+  }
+  return sum;
+}
+
 Outputs run(const Inputs& in, const Params& p, Context& ctx) {
+  ctx.claim(bytes_of_welding(*in.mesh, p.attributes));
   const Mesh mesh = p.attributes == Attributes::corners ? with_corner_attributes(*in.mesh) : *in.mesh;
   const std::vector<std::uint32_t> place = places_of(mesh, p.tolerance, ctx);
   ctx.poll();

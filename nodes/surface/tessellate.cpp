@@ -169,6 +169,11 @@ struct Columns {
         normal(Column::make<glm::vec<3, R>>("normal", Domain::corner, 3 * faces, space)),
         patch(Column::make<std::uint32_t>("patch", Domain::face, faces)) {}
 
+  static std::uint64_t bytes(std::size_t vertices, std::size_t faces) {
+    return 3 * sizeof(R) * vertices +
+           (sizeof(glm::uvec3) + 3 * 5 * sizeof(R) + sizeof(std::uint32_t)) * faces;
+  }
+
   void write(const PatchMesh& mesh, const BicubicNet& net, std::uint32_t index, std::uint32_t first_inside,
              std::size_t face) {
     std::vector<glm::vec<3, R>> normals;
@@ -198,9 +203,25 @@ struct Columns {
   }
 };
 
+// Of the triangles and vertices of all patches, before they are made: a grid of u by v has 2 u v triangles, and a side
+// adds at most its segments.
+std::uint64_t bytes_of_patches(const Plan& plan) {
+  std::uint64_t sum = 0;
+  for (std::size_t p = 0; p < plan.patches.size(); ++p) {
+    const std::array<int, 4> sides = plan.side_segments(p);
+    const Segments grid = interior_grid(plan.segments[p], sides);
+    const auto u = static_cast<std::uint64_t>(grid.u), v = static_cast<std::uint64_t>(grid.v);
+    std::uint64_t around = 0;
+    for (const int n : sides) around += static_cast<std::uint64_t>(n);
+    sum += (2 * u * v + around) * sizeof(Triangle) + (u * v + around) * sizeof(LocalVertex);
+  }
+  return sum;
+}
+
 template <class R>
 Ref<Mesh> build(Plan plan, const Surface& surface, Context& ctx) {
   const Numbering numbers(plan, surface.points.size());
+  ctx.claim(bytes_of_patches(plan));
   std::vector<PatchMesh> meshes(plan.patches.size());
   tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t p) {
     ctx.poll();
@@ -210,6 +231,7 @@ Ref<Mesh> build(Plan plan, const Surface& surface, Context& ctx) {
   std::vector<std::size_t> first_face{0};
   for (const PatchMesh& m : meshes) first_face.push_back(first_face.back() + m.triangles.size());
 
+  ctx.claim(Columns<R>::bytes(numbers.count, first_face.back()));
   Columns<R> columns(numbers.count, first_face.back(), surface.space);
   place_shared_vertices<R>(plan, numbers, surface.points,
                            columns.position->template values<glm::vec<3, R>>());
