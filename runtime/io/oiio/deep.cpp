@@ -42,6 +42,15 @@ struct File {
   }
 };
 
+// What the library says, without the name of the file, which stands before it already, and as part of a sentence.
+std::string said_by(const std::exception& e) {
+  std::string why = e.what();
+  const std::size_t name = why.find("image file \""), end = why.find("\". ", name);
+  if (name != std::string::npos && end != std::string::npos) why.erase(0, end + 3);
+  while (!why.empty() && (why.back() == '.' || why.back() == '\n')) why.pop_back();
+  return why;
+}
+
 std::uint64_t size_of(const std::string& path, std::string_view name) {
   struct stat info {};
   std::string_view why;
@@ -235,7 +244,7 @@ Fragments read_deep(const std::string& path, std::string_view name, int part, co
   } catch (const WorldError&) {
     throw;
   } catch (const std::exception& e) {
-    file.malformed(e.what());
+    file.malformed(said_by(e));
   }
 }
 
