@@ -8,91 +8,12 @@ unlit and two-sided, nested and mirrored nodes, indices of 16 and 32 bits, norma
 colours, a perspective camera, and lights of KHR_lights_punctual. Standard library only; the bytes depend on the
 version of zlib alone.
 """
-import json
 import math
-import struct
 import sys
-import zlib
 
-blob, views, accessors = bytearray(), [], []
-
-
-def view(data, target=None):
-    while len(blob) % 4:
-        blob.append(0)
-    views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(data)})
-    if target:
-        views[-1]["target"] = target
-    blob.extend(data)
-    return len(views) - 1
-
-
-def accessor(rows, kind, code, component, bounds=False, normalized=False):
-    flat = [v for r in rows for v in (r if isinstance(r, tuple) else (r,))]
-    a = {"bufferView": view(struct.pack(f"<{len(flat)}{code}", *flat), 34963 if kind == "SCALAR" else 34962),
-         "componentType": component, "count": len(rows), "type": kind}
-    if bounds:
-        a["min"] = [min(c) for c in zip(*rows)]
-        a["max"] = [max(c) for c in zip(*rows)]
-    if normalized:
-        a["normalized"] = True
-    accessors.append(a)
-    return len(accessors) - 1
-
-
-def f32(v):
-    return struct.unpack("<f", struct.pack("<f", v))[0]
-
-
-def grid(nu, nv, point, uv=lambda s, t: (s, t), color=None, short_uv=False):
-    """A primitive over [0, 1]^2: point(s, t) -> position; normals by differences."""
-    rows = [(i / nu, j / nv) for j in range(nv + 1) for i in range(nu + 1)]
-    position, normal = [], []
-    for s, t in rows:
-        e = 1e-4
-        p = point(s, t)
-        a = [x - y for x, y in zip(point(s + e, t), point(s - e, t))]
-        b = [x - y for x, y in zip(point(s, t + e), point(s, t - e))]
-        n = (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-        size = math.sqrt(sum(x * x for x in n)) or 1
-        position.append(tuple(f32(x) for x in p))
-        normal.append(tuple(x / size for x in n))
-    index = []
-    for j in range(nv):
-        for i in range(nu):
-            k = j * (nu + 1) + i
-            index += [k, k + 1, k + nu + 2, k, k + nu + 2, k + nu + 1]
-    small = len(rows) < 65535
-    attributes = {"POSITION": accessor(position, "VEC3", "f", 5126, bounds=True),
-                  "NORMAL": accessor(normal, "VEC3", "f", 5126)}
-    place = [uv(s, t) for s, t in rows]
-    if short_uv:
-        attributes["TEXCOORD_0"] = accessor([(round(u * 65535), round(v * 65535)) for u, v in place], "VEC2", "H", 5123,
-                                            normalized=True)
-    else:
-        attributes["TEXCOORD_0"] = accessor(place, "VEC2", "f", 5126)
-    if color:
-        attributes["COLOR_0"] = accessor([tuple(round(255 * c) for c in color(s, t)) + (255,) for s, t in rows], "VEC4",
-                                         "B", 5121, normalized=True)
-    return {"attributes": attributes, "indices": accessor(index, "SCALAR", "H" if small else "I", 5123 if small else 5125)}
-
-
-def png(width, height, pixel):
-    raw = b"".join(b"\0" + bytes(round(255 * min(1, max(0, c))) for x in range(width) for c in pixel(x / width, y / height))
-                   for y in range(height))
-
-    def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
-            chunk(b"IDAT", zlib.compress(raw, 9)) + chunk(b"IEND", b""))
-
+from glb import TAU, grid, lathe, look, mesh, mix, png, turn, view, write
 
 # ----- pictures, sRGB
-
-def mix(a, b, t):
-    return tuple(x + (y - x) * t for x, y in zip(a, b))
-
 
 def wood(u, v):
     plank = math.floor(v * 5)
@@ -124,17 +45,6 @@ for picture in (png(256, 256, wood), png(384, 256, glaze), png(384, 192, chart))
 
 # ----- shapes, y up
 
-TAU = 2 * math.pi
-
-
-def lathe(profile):
-    def point(s, t):
-        r, y = profile(min(1, max(0, t)))
-        r = max(r, 1e-7)
-        return (r * math.sin(TAU * s), y, r * math.cos(TAU * s))
-    return point
-
-
 def vase(t):
     return 0.16 + 0.36 * math.sin(math.pi * (0.12 + 0.80 * t)) ** 1.6 + 0.13 * max(0, t - 0.82) / 0.18, 1.55 * t
 
@@ -160,11 +70,6 @@ def dusk(s, t):
     return mix((0.95, 0.55, 0.30), (0.16, 0.20, 0.42), t)
 
 
-def mesh(name, material, primitive):
-    primitive["material"] = material
-    return {"name": name, "primitives": [primitive]}
-
-
 meshes = [mesh("table", 0, grid(8, 8, table, lambda s, t: (2 * s, 2 * t))),
           mesh("vase", 1, grid(56, 40, lathe(vase), lambda s, t: (s, 1 - t), short_uv=True)),
           mesh("globe", 2, grid(56, 28, lathe(ball), lambda s, t: (s, 1 - t), short_uv=True)),
@@ -182,23 +87,6 @@ def material(name, color=(1, 1, 1), metallic=0.0, roughness=0.6, texture_index=N
     if texture_index is not None:
         pbr["baseColorTexture"] = texture(texture_index)
     return {"name": name, "pbrMetallicRoughness": pbr, **more}
-
-
-def turn(axis, degrees):
-    h = math.radians(degrees) / 2
-    return [axis[0] * math.sin(h), axis[1] * math.sin(h), axis[2] * math.sin(h), math.cos(h)]
-
-
-def look(eye, target):
-    """The node matrix of a camera or light at `eye`."""
-    z = [e - t for e, t in zip(eye, target)]
-    size = math.sqrt(sum(c * c for c in z))
-    z = [c / size for c in z]
-    x = [z[2], 0, -z[0]]
-    size = math.hypot(x[0], x[2])
-    x = [c / size for c in x]
-    y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]]
-    return [*x, 0, *y, 0, *z, 0, *eye, 1]
 
 
 nodes = [{"name": "room", "children": [1, 2, 3, 5, 6, 7, 8, 9, 10, 11]},
@@ -234,15 +122,6 @@ document = {
     "extensions": {"KHR_lights_punctual": {"lights": [
         {"name": "window", "type": "directional", "color": [1, 0.96, 0.88], "intensity": 2.4},
         {"name": "lamp", "type": "point", "color": [1, 0.72, 0.42], "intensity": 9},
-        {"name": "sky", "type": "directional", "color": [0.55, 0.7, 1], "intensity": 0.9}]}},
-    "bufferViews": views, "accessors": accessors, "buffers": [{"byteLength": 0}]}
+        {"name": "sky", "type": "directional", "color": [0.55, 0.7, 1], "intensity": 0.9}]}}}
 
-while len(blob) % 4:
-    blob.append(0)
-document["buffers"][0]["byteLength"] = len(blob)
-text = json.dumps(document, separators=(",", ":")).encode()
-text += b" " * (-len(text) % 4)
-with open(sys.argv[1], "wb") as out:
-    out.write(struct.pack("<III", 0x46546C67, 2, 12 + 8 + len(text) + 8 + len(blob)))
-    out.write(struct.pack("<II", len(text), 0x4E4F534A) + text)
-    out.write(struct.pack("<II", len(blob), 0x004E4942) + blob)
+write(sys.argv[1], document)
