@@ -180,9 +180,8 @@ NodeType nodes::clip_homogeneous() {
       .param("guard_band", &Params::guard_band,
              "Half-width of the x and y band that cuts; raising it cuts fewer faces.",
              {.unit = "w", .range = at_least(1)})
-      .effect(
-          "clipping", clipping, "Faces are tested against the planes of the view volume, and cut.",
-          {"face", 4})  // tests/bench/effects_bench.cpp, one thread, a machine shared with others: 3.3 to 4.2
+      .effect("clipping", clipping, "Faces are tested against the planes of the view volume, and cut.",
+              {"face", 3})  // tests/bench/effects_bench.cpp, one thread: 2.9 to 3.2
       .output("mesh", &Outputs::mesh, "The parts inside, cut faces last; winding and attributes are kept.",
               {.space = Space::clip});
 }

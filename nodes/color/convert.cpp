@@ -178,7 +178,9 @@ NodeType nodes::color_convert() {
           .knob({"ocio", "exact"},
                 "OpenColorIO's optimised curves are off by up to 7.6e-7, in the toe relatively 2.5e-4.")
           .check(check)
-          .effect("color_conversion", conversion, "Every colour is converted.")
+          .effect("color_conversion", conversion, "Every colour is converted.",
+                  {"pixel",
+                   4})  // tests/bench/effects_bench.cpp, one thread, an identity that is forced: 4.1 to 4.5
           .output("image", &Outputs::image,
                   "The same window, samples and planes, in the colour space asked for.");
   depend_on_color_environment(type);

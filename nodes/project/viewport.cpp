@@ -23,7 +23,8 @@ Verdict divide(const Inputs& in, const Params&, const Context& ctx) {
     const auto column = in.mesh->real<R>("position");
     const auto clip = column->template values<glm::vec<4, R>>();
     const std::size_t vertex = kernels::first_to_divide<R>(clip);
-    if (vertex == clip.size()) return off_exact("w is 1 at every vertex: the projection is parallel", clip.size());
+    if (vertex == clip.size())
+      return off_exact("w is 1 at every vertex: the projection is parallel", clip.size());
     return on(fmt::format("w is {:.6g} at vertex {}", clip[vertex].w, vertex), clip.size());
   });
 }
@@ -61,7 +62,8 @@ NodeType nodes::project_viewport() {
       .covers(21)
       .input("mesh", &Inputs::mesh, "A clipped mesh in clip space.", {.space = Space::clip})
       .input("camera", &Inputs::camera, "Whose resolution the picture has.")
-      .effect("perspective_divide", divide, "Positions are divided by w.")
+      .effect("perspective_divide", divide, "Positions are divided by w.",
+              {"vertex", 1})  // tests/bench/effects_bench.cpp, one thread: 0.5 to 1.1
       .output("mesh", &Outputs::mesh,
               "Position on the screen; faces with a corner on or behind the eye's plane are dropped.",
               {.space = Space::screen});

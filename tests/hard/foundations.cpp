@@ -2,6 +2,7 @@
 #include "nodes/kernels/predicates.h"
 #include "nodes/kernels/stencil.h"
 #include "nodes/kernels/vector.h"
+#include "nodes/vector/plane.h"
 #include "tests/hard/exact.h"
 #include "tests/hard/naive.h"
 #include "tests/hard/stages.h"
@@ -289,6 +290,67 @@ void point_of_a_line(Trial& t) {
       [&](const Line& l) { return robust(l[0], l[1], l[2]); });
 }
 
+using Polygon = std::vector<dvec3>;
+
+// The angle to the exact area vector of the corners as they are stored.
+double angle_to_area_vector(const dvec3& n, const Polygon& p) {
+  std::array<Rational, 3> area;
+  for (std::size_t i = 1; i + 1 < p.size(); ++i)
+    for (glm::length_t c = 0; c < 3; ++c) {
+      const glm::length_t x = (c + 1) % 3, y = (c + 2) % 3;
+      const auto side = [&](std::size_t k, glm::length_t axis) -> Rational {
+        return Rational(p[k][axis]) - Rational(p[0][axis]);
+      };
+      area[static_cast<std::size_t>(c)] += side(i, x) * side(i + 1, y) - side(i, y) * side(i + 1, x);
+    }
+  Real across, along;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t x = (c + 1) % 3, y = (c + 2) % 3;
+    const auto component = [&](std::size_t k) { return Real(n[static_cast<glm::length_t>(k)]); };
+    const Real cross = component(x) * Real(area[y]) - component(y) * Real(area[x]);
+    across = across + cross * cross, along = along + component(c) * Real(area[c]);
+  }
+  return atan2(sqrt(across), along).to_double();
+}
+
+dvec3 by_three_corners(const Polygon& p) {
+  return naive::normalized(dvec3(kernels::cross(p[1] - p[0], p[2] - p[1])));
+}
+
+void plane_of_a_polygon(Trial& t) {
+  const auto judge = [&](const Polygon& p) {
+    const auto plane = vector::plane_of(p);
+    t.require(plane.has_value(), "the corners span a plane", {p[0].x, p[0].y, p[0].z});
+    if (!plane) return;
+    const double scale = u64 * plane->condition;
+    t.measure(angle_to_area_vector(by_three_corners(p), p) / scale,
+              angle_to_area_vector(plane->normal, p) / scale,
+              {p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z});
+  };
+  judge({{0, 0, 0}, {1, 0, 0}, {1e6, 1e-6, 0}, {2e6, 0, 1e-9}});
+  const auto ring = [&](const dvec3& centre, std::size_t corners) {
+    Polygon p;
+    const dvec3 u = dvec3(2, -1, 2) / 3.0, v = dvec3(-1, 2, 2) / 3.0;
+    for (std::size_t i = 0; i < corners; ++i) {
+      const double angle = 2 * M_PI * static_cast<double>(i) / static_cast<double>(corners);
+      p.push_back(centre + u * std::cos(angle) + v * std::sin(angle));
+    }
+    return p;
+  };
+  judge(ring({1e7, -2e7, 3e7}, 1000));
+  for (std::size_t n = t.samples(100, 5000); n-- > 0;)
+    judge(ring({t.random.magnitude(0, 24), t.random.magnitude(0, 24), t.random.magnitude(0, 24)},
+               3 + t.random.below(60)));
+  for (const Polygon& line : {Polygon{{0, 0, 0}, {1, 2, 3}, {2, 4, 6}},
+                              {{0.1, 0.1, 0.3}, {0.2, 0.2, 0.6}, {0.3, 0.3, 0.9}},
+                              {{0, 0, 0}, {1, 0, 0}, {1e6, 1e-12, 0}, {2e6, 0, 0}}})
+    t.require(!vector::plane_of(line), "corners on a line are degenerate", {line[1].x, line[1].y, line[1].z});
+  // Triangles: of larger polygons the naive method reads three corners and ours all.
+  std::vector<Polygon> triangles;
+  for (int i = 0; i < 1000; ++i) triangles.push_back(ring({t.random.uniform(), t.random.uniform(), 1}, 3));
+  t.price_over(triangles, by_three_corners, [](const Polygon& p) { return vector::plane_of(p)->normal; });
+}
+
 }  // namespace
 
 std::vector<HardCase> foundations() {
@@ -314,6 +376,12 @@ std::vector<HardCase> foundations() {
       {"FND-08", "four points of a plane at 1e7, moved by 2^-45", "the 3x3 determinant in double",
        "kernels::orientation (3-D)", "rationals", "no wrong sign; antisymmetric", "wrong signs", 0,
        orientation_of_nearly_coplanar},
+      {"FND-09",
+       "(0,0,0), (1,0,0), (1e6,1e-6,0), (2e6,0,1e-9); rings of radius 1 and 3 to 1000 corners out to 4e7",
+       "the cross product of the first two sides, double", "vector::plane_of",
+       "the area vector in rationals, its angle by MPFR",
+       "angle <= 8 u cond, cond = perimeter^2 / area; corners on a line are degenerate", "u cond", 8,
+       plane_of_a_polygon},
       {"FND-12", "lines from +-1e8 to +-2^27, t = 0, 1 and between", "a + t (b - a) in float",
        "kernels::lerp", "rationals", "ends bit for bit; monotonic; within 2 ulp of the larger end",
        "ends missed", 0, point_of_a_line},

@@ -17,6 +17,7 @@ extern const std::size_t catalogue_size;
 
 std::vector<HardCase> foundations();
 std::vector<HardCase> transforms();
+std::vector<HardCase> quaternions();
 std::vector<HardCase> projection();
 std::vector<HardCase> clipping();
 std::vector<HardCase> culling();

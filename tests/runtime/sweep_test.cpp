@@ -1,5 +1,6 @@
 #include "runtime/app/sweep/sweep.h"
 
+#include "runtime/app/export.h"
 #include "runtime/app/files.h"
 #include "runtime/app/sweep/analysis.h"
 #include "runtime/app/sweep/journal.h"
@@ -13,6 +14,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <sstream>
 
 namespace frustum {
 namespace {
@@ -191,6 +194,17 @@ TEST(Sweep, AGridHasEveryCombination) {
   const Sweep s = swept(o);
   EXPECT_EQ(s.points.size(), 6u);
   EXPECT_TRUE(s.fits.empty());
+  const auto& exact = *std::find_if(s.points.begin(), s.points.end(), [](const SweepPoint& p) {
+    return p.values == std::vector<std::string>{"4", "phong"};
+  });
+  EXPECT_EQ(exact.error("rmse"), 0) << "the reference is its last corner";
+  for (const SweepPoint& p : s.points) {
+    const bool dominated = std::any_of(s.points.begin(), s.points.end(), [&](const SweepPoint& q) {
+      return median_of(q) < median_of(p) && q.error("rmse") < p.error("rmse");
+    });
+    EXPECT_TRUE(!p.pareto || !dominated) << p.values[0] << ", " << p.values[1];
+  }
+  EXPECT_TRUE(exact.pareto);
   o.knobs = {"samples=1,2,3,4,5,6,7,8,9,10", "mesh:tolerance_px=1,2,3,4,5,6,7,8,9,10",
              "mesh:min_segments=1,2,3,4,5,6,7,8,9,10", "draw/pixels:radius=1,2,3,4,5,6,7,8,9,10,11"};
   Diagnostics problems;
@@ -203,6 +217,47 @@ TEST(Sweep, AKnobThatChangesNothingIsSaidSo) {
   ASSERT_EQ(s.fits.size(), 1u);
   EXPECT_TRUE(s.fits[0].without_effect);
   EXPECT_THAT(sweep_text(s, 5), HasSubstr("no effect"));
+}
+
+// What the graph has is a value of every knob: turned to the other one, a knob of two values has an effect.
+TEST(Sweep, TheGraphAsItIsHasAnOwnErrorOfEveryKnob) {
+  const TempFolder folder;
+  const Sweep s = swept(small(folder, {"draw/lit:rate=pixel,sample", "samples=1,4,16"}));
+  ASSERT_EQ(s.points.size(), 4u);
+  EXPECT_GT(s.points.front().own_error(0).value(), 0);
+  EXPECT_GT(s.points.front().own_error(1).value(), 0);
+  EXPECT_NE(s.points.front().own_error(0), s.points.front().own_error(1));
+  EXPECT_FALSE(s.fits[0].without_effect);
+  EXPECT_EQ(point(s, "sample").own_error(), 0);
+}
+
+TEST(Sweep, SaysWhereItsTimeWent) {
+  const TempFolder folder;
+  Sweep s = swept(small(folder, {"samples=1,4,16"}));
+  const auto files = write_sweep(s);
+  const SweepCosts& c = s.costs;
+  for (const double part : {c.timed, c.first, c.reference, c.loading, c.judging, c.journal, c.report})
+    EXPECT_GT(part, 0);
+  const double parts = c.runs() + c.loading + c.judging + c.journal + c.report;
+  EXPECT_LE(parts, c.total);
+  EXPECT_NEAR(c.overhead(), 1 - c.runs() / c.total, 1e-12);
+  const Json json = Json::parse(read_text(files[0]));
+  EXPECT_DOUBLE_EQ(json["overhead"].get<double>(), c.overhead());
+  EXPECT_GT(json["seconds"]["report"].get<double>(), 0);
+  EXPECT_THAT(read_text(files[2]), HasSubstr("measuring overhead"));
+  EXPECT_THAT(sweep_text(s, 1), HasSubstr("measuring overhead"));
+}
+
+TEST(SweepReport, SaysWhetherASlopeIsThatOfTheory) {
+  SweepKnob knob{"samples", {"1", "4"}, "1", "", -0.75};
+  KnobFit fit;
+  EXPECT_EQ(theory_text(fit, knob), "") << "nothing was fitted";
+  fit.over_value = SlopeFit{.slope = -0.84, .r2 = 1};
+  EXPECT_EQ(theory_text(fit, knob), "within 0.15 of theory");
+  fit.over_value->slope = -0.91;
+  EXPECT_EQ(theory_text(fit, knob), "outside 0.15 of theory");
+  knob.slope.reset();
+  EXPECT_EQ(theory_text(fit, knob), "");
 }
 
 TEST(Sweep, GoesOnWhereItWasCutOff) {
@@ -244,6 +299,17 @@ TEST(Sweep, CancellingKeepsWhatIsFinished) {
   SweepOptions rest = small(folder, {"samples=1,4,16"});
   rest.resume = true;
   EXPECT_GE(swept(rest).resumed, 1u);
+  std::map<std::string, int> errors, times;
+  std::istringstream journal(read_text(fs::path(folder.path()) / "points.jsonl"));
+  std::string line;
+  for (std::getline(journal, line); std::getline(journal, line);) {
+    const Json entry = Json::parse(line);
+    if (entry.contains("errors")) ++errors[entry["point"]];
+    if (entry.contains("ns")) ++times[entry["point"]];
+  }
+  EXPECT_EQ(errors.size(), 3u);
+  for (const auto& [point, n] : errors) EXPECT_EQ(n, 1) << point << " was measured twice";
+  for (const auto& [point, n] : times) EXPECT_EQ(n, 1) << point << " was timed twice";
 }
 
 TEST(Sweep, TheReferenceMayBeSetOrAFile) {
@@ -253,9 +319,27 @@ TEST(Sweep, TheReferenceMayBeSetOrAFile) {
   const Sweep s = swept(o);
   EXPECT_GT(point(s, "16").error("rmse"), 0);
   EXPECT_EQ(s.reference, "samples = 64");
+  o.reference = {"samples=4", "precision=double"};
+  EXPECT_GT(swept(o).points.front().error("rmse"), 0) << "4 samples in single precision";
+  EXPECT_LT(swept(o).points.front().error("rmse"), 0.1 * s.points.front().error("rmse"));
   o.reference = {"samples"};
   Diagnostics problems;
   EXPECT_THROW(run_sweep(session(), o, problems), NodeError);
+
+  // A picture of the graph at another setting, saved and read again, is that reference.
+  LoadOptions exact = o.load;
+  exact.settings.push_back({"samples", "64"});
+  const Loaded loaded = session().load(teapot, exact);
+  const PortRef want = *loaded.graph->find_port("draw.image");
+  const Buffer b = session().run(*loaded.graph, {.demand = {.ports = {want}}}, false).buffers.at(want);
+  const std::string file = folder.file("exact.exr");
+  save_raster(b.type().raster(b.data()), file);
+  o.reference.clear(), o.reference_file = file;
+  const Sweep from_file = swept(o);
+  EXPECT_EQ(from_file.reference, file);
+  for (std::size_t i = 0; i < s.points.size(); ++i)
+    EXPECT_NEAR(from_file.points[i].error("rmse"), s.points[i].error("rmse"),
+                1e-3 * s.points[i].error("rmse"));
 }
 
 TEST(Sweep, ABadSettingIsADiagnostic) {

@@ -19,6 +19,9 @@ void analyse(Sweep&);
 // (the next term of the error, the exact value's own error) bend a line of some five points by.
 inline constexpr double slope_tolerance = 0.15;
 
+// Below this share of explained variance a line says nothing: its slope is not shown.
+inline constexpr double least_r2 = 0.8;
+
 // Whether the slope over values is the one that theory expects; nothing where there is no theory or no fit.
 std::optional<bool> agrees_with_theory(const KnobFit&, const SweepKnob&);
 

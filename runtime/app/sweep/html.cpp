@@ -99,7 +99,10 @@ class Page {
     std::string out = fmt::format("As it is, the graph takes <b>{}</b> and is off by <b>{} {}</b>.",
                                   ms_text(time(now)), metric_, error_text(error(now)));
     if (s_.steps.empty()) return out + " No single turn of a knob comes nearer to the reference.";
-    const SweepStep& first = s_.steps.front();
+    // Of what is nearly free, the first that is worth a change.
+    const auto worth = std::find_if(s_.steps.begin(), s_.steps.end(),
+                                    [](const SweepStep& t) { return t.error_ratio <= 0.9; });
+    const SweepStep& first = worth == s_.steps.end() ? s_.steps.front() : *worth;
     out += fmt::format(" The best buy is <b>{}</b>: the error becomes {:.2g} times what it was for {}.",
                        escaped(short_name(s_.points[first.point])), first.error_ratio,
                        first.time_ms > 0 ? ms_text(first.time_ms) + " more" : "no more time");
@@ -122,6 +125,9 @@ class Page {
     for (std::size_t k = 0; k < s_.knobs.size() && !s_.options.grid; ++k)
       legend += fmt::format("<span><i class=\"s{}\" style=\"background:currentColor\"></i>{}</span>", k % 10,
                             escaped(s_.knobs[k].address));
+    for (std::size_t v = 0; s_.options.grid && v < s_.knobs.front().values.size(); ++v)
+      legend += fmt::format("<span><i class=\"s{}\" style=\"background:currentColor\"></i>{} = {}</span>",
+                            v % 10, escaped(s_.knobs.front().address), escaped(s_.knobs.front().values[v]));
     legend += "<span><i class=\"step\"></i>Pareto front</span>";
     if (!s_.options.grid) legend += "<span>ringed: the graph as it is</span>";
     return fmt::format(
@@ -192,11 +198,13 @@ class Page {
       const auto agrees = agrees_with_theory(fit, knob);
       out += fmt::format("<span>error ~ value<sup><b class=\"{}\">{:+.2f}</b></sup></span>",
                          agrees ? *agrees ? "good" : "off" : "", fit.over_value->slope);
-      if (agrees) out += fmt::format("<span>theory {:+.2f}: {}</span>", *knob.slope, theory_text(fit, knob));
+      if (agrees)
+        out += fmt::format("<span>theory {:+.2f}: {} {}</span>", *knob.slope, *agrees ? "within" : "outside",
+                           slope_tolerance);
     }
-    if (fit.over_time)
+    if (fit.over_time && fit.over_time->r2 >= least_r2)
       out += fmt::format("<span>error ~ time<sup><b>{:+.2f}</b></sup></span>", fit.over_time->slope);
-    if (fit.over_work)
+    if (fit.over_work && fit.over_work->r2 >= least_r2)
       out += fmt::format("<span>~ work<sup><b>{:+.2f}</b></sup></span>", fit.over_work->slope);
     return out + "</div>";
   }
@@ -297,16 +305,19 @@ class Page {
   std::string table() const {
     std::string head = "<th>setting</th>", rows;
     for (const std::string& m : s_.options.metrics) head += "<th>" + m + "</th>";
-    head += "<th>own error</th><th>min</th><th>median</th><th>mad</th><th>work</th><th>front</th>";
+    if (!s_.options.grid) head += "<th>own error</th>";
+    head += "<th>min</th><th>median</th><th>mad</th><th>work</th><th>front</th>";
     for (std::size_t i = 0; i < s_.points.size(); ++i) {
       const SweepPoint& p = s_.points[i];
       rows += fmt::format("<tr data-point=\"{}\"><td>{}</td>", i, escaped(short_name(p)));
       for (const std::string& m : s_.options.metrics)
         rows += fmt::format("<td>{}</td>", error_text(p.error(m)));
-      rows += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.5g}</td><td>{}</td></tr>\n",
-                          p.own_error() ? error_text(*p.own_error()) : "", ms_text(milliseconds(min_of(p))),
-                          ms_text(time(p)), ms_text(milliseconds(deviation_of(p))),
-                          static_cast<double>(p.work), p.pareto ? "●" : "");
+      if (!s_.options.grid)
+        rows += fmt::format("<td>{}</td>", p.own_error() ? error_text(*p.own_error()) : "");
+      rows += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{:.5g}</td><td>{}</td></tr>\n",
+                          ms_text(milliseconds(min_of(p))), ms_text(time(p)),
+                          ms_text(milliseconds(deviation_of(p))), static_cast<double>(p.work),
+                          p.pareto ? "●" : "");
     }
     return "<section><h2>Every setting</h2><div class=\"card scroll\" "
            "style=\"margin-top:.6rem\"><table><thead><tr>" +

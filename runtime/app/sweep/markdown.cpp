@@ -61,10 +61,11 @@ std::string slopes(const Sweep& s) {
   for (const KnobFit& f : s.fits) {
     const SweepKnob& k = s.knobs[f.knob];
     if (!f.over_value) continue;
-    rows += fmt::format("| `{}` | {} | {:+.2f} | {} | {:+.2f} | {:.3f} |\n", k.address,
-                        fmt::join(k.values, ", "), f.over_value->slope,
+    const bool timed = f.over_time && f.over_time->r2 >= least_r2;
+    rows += fmt::format("| `{}` | {} | {:+.2f} | {} | {} | {:.3f} |\n", k.address, fmt::join(k.values, ", "),
+                        f.over_value->slope,
                         k.slope ? fmt::format("{:+.2f}: {}", *k.slope, theory_text(f, k)) : "",
-                        f.over_time ? f.over_time->slope : 0.0, f.over_value->r2);
+                        timed ? fmt::format("{:+.2f}", f.over_time->slope) : "no line", f.over_value->r2);
   }
   if (rows.empty()) return "";
   return "| knob | values | error ~ value^ | theory | error ~ time^ | r² |\n| --- | --- | --- | --- | --- | "

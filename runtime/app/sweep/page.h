@@ -57,7 +57,7 @@ stroke-width:1.6;opacity:.9}.plot .theory{stroke:var(--faint);stroke-width:1.6;s
 .s5{color:var(--c5)}.s6{color:var(--c6)}.s7{color:var(--c7)}.s8{color:var(--c8)}.s9{color:var(--c9)}
 .knobs{display:grid;grid-template-columns:repeat(auto-fill,minmax(330px,1fr));gap:1rem;margin-top:.9rem}
 .knobs .card{padding:.95rem 1rem .7rem}.knobs p{font-size:.83rem;color:var(--soft);margin-top:.15rem}
-.slopes{display:flex;gap:1.1rem;margin:.35rem 0 .3rem;font-size:.85rem;color:var(--soft);flex-wrap:wrap}
+.slopes{display:flex;gap:.15rem 1.1rem;margin:.35rem 0 .3rem;font-size:.85rem;color:var(--soft);flex-wrap:wrap}
 .slopes b{color:var(--ink);font-weight:620}.good{color:var(--c2)!important}.off{color:var(--c1)!important}
 table{border-collapse:collapse;width:100%;font-size:.87rem}th{text-align:right;font-weight:560;
 color:var(--soft);padding:.35rem .6rem;border-bottom:1px solid var(--line);white-space:nowrap}

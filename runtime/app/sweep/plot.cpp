@@ -151,7 +151,7 @@ class Drawing {
     std::string path;
     for (const PlotPoint& q : s.points)
       path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", px(q), py(q));
-    if (s.points.size() > 1) out_ += fmt::format("<path class=\"join\" d=\"{}\"/>", path);
+    if (s.joined && s.points.size() > 1) out_ += fmt::format("<path class=\"join\" d=\"{}\"/>", path);
     for (const PlotPoint& q : s.points)
       out_ += fmt::format(
           "<circle class=\"{}\" data-point=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" "

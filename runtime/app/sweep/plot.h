@@ -21,8 +21,9 @@ struct PlotPoint {
 
 struct PlotSeries {
   std::string name;
-  std::size_t color = 0;          // one of ten
-  std::vector<PlotPoint> points;  // joined in this order
+  std::size_t color = 0;  // one of ten
+  std::vector<PlotPoint> points;
+  bool joined = true;  // by a line, in this order
 };
 
 // y = 10^intercept x^slope, over the whole width.

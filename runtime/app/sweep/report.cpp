@@ -56,7 +56,9 @@ Json costs_json(const SweepCosts& c) {
 }
 
 std::string fitted(const std::optional<SlopeFit>& f) {
-  return f ? fmt::format("{:+.2f} (r2 {:.3f}, {} points)", f->slope, f->r2, f->points) : std::string("-");
+  if (!f) return "-";
+  if (f->r2 < least_r2) return fmt::format("no line (r2 {:.2f})", f->r2);
+  return fmt::format("{:+.2f} (r2 {:.3f}, {} points)", f->slope, f->r2, f->points);
 }
 
 // Adds the time since `began` to what the report of the sweep has cost.
@@ -83,8 +85,11 @@ std::string theory_text(const KnobFit& fit, const SweepKnob& knob) {
 }
 
 std::string name_of(const Sweep& s, const SweepPoint& p) {
-  if (p.knob)
-    return fmt::format("{}: {} -> {}", s.knobs[*p.knob].address, s.knobs[*p.knob].current, p.values[*p.knob]);
+  if (p.knob) {
+    const SweepKnob& k = s.knobs[*p.knob];
+    return k.current.empty() ? fmt::format("{} = {}", k.address, p.values[*p.knob])
+                             : fmt::format("{}: {} -> {}", k.address, k.current, p.values[*p.knob]);
+  }
   if (!s.options.grid) return "as it is";
   std::string out;
   for (std::size_t k = 0; k < p.values.size(); ++k)
@@ -206,9 +211,17 @@ Plot error_plot(const Sweep& s) {
           series.points.push_back(plotted(i, false));
     plot.series.push_back(std::move(series));
   }
-  for (std::size_t i = 0; i < s.points.size(); ++i)
-    if (s.options.grid || i == 0)
-      plot.series.push_back({"", s.options.grid ? 0u : 7u, {plotted(i, !s.options.grid)}});
+  if (s.options.grid)
+    for (std::size_t v = 0; v < s.knobs.front().values.size(); ++v) {
+      PlotSeries series{s.knobs.front().values[v], v, {}};
+      for (std::size_t i = 0; i < s.points.size(); ++i)
+        if (s.points[i].values.front() == s.knobs.front().values[v])
+          series.points.push_back(plotted(i, false));
+      series.joined = s.knobs.size() == 2;
+      plot.series.push_back(std::move(series));
+    }
+  else if (!s.points.empty())
+    plot.series.push_back({"", 7u, {plotted(0, true)}});
   return plot;
 }
 

@@ -70,7 +70,7 @@ struct SweepPoint {
 // A straight line through log(error) over log(x), by least squares.
 struct SlopeFit {
   double slope = 0, intercept = 0;  // log10(error) = slope log10(x) + intercept
-  double r2 = 0;
+  double r2 = 0;                    // the share of the errors' variance that the line explains
   std::size_t points = 0;
 };
 
