@@ -11,7 +11,7 @@
 
 namespace frustum::kernels {
 
-enum class PatternKind : std::uint8_t { grid, jittered, sobol };
+enum class PatternKind : std::uint8_t { grid, jittered, sobol, standard };
 
 // The grid closest to square that has exactly n cells: `columns` is the least divisor of n not below sqrt(n).
 // A prime n gives one row.
@@ -25,8 +25,24 @@ constexpr GridShape grid_shape(int n) {
   return {n / rows, rows};
 }
 
-// Pixels after which the pattern repeats, in x and y; the grid is the same in every pixel.
-constexpr int pattern_period(PatternKind kind) { return kind == PatternKind::grid ? 1 : 64; }
+// Pixels after which the pattern repeats, in x and y; the grid and the standard are the same in every pixel.
+constexpr int pattern_period(PatternKind kind) {
+  return kind == PatternKind::grid || kind == PatternKind::standard ? 1 : 64;
+}
+
+// Whether the graphics interfaces agree on places for that many samples.
+constexpr bool has_standard_samples(int n) { return n == 1 || n == 2 || n == 4 || n == 8 || n == 16; }
+
+// Their standard places in 1/16 px from the top left corner, y down, in their order: those for n samples
+// start at n - 1. Source: Vulkan 1.3, "Multisampling", standardSampleLocations; Direct3D 11.3, 19.2.4. OpenGL
+// leaves them to the implementation, and y runs up there.
+inline constexpr std::array<std::array<std::uint8_t, 2>, 31> standard_samples{
+    {{8, 8},                                                                               //
+     {12, 12}, {4, 4},                                                                     //
+     {6, 2},   {14, 6}, {2, 10}, {10, 14},                                                 //
+     {9, 5},   {7, 11}, {13, 9}, {5, 3},   {3, 13}, {1, 7},   {11, 15}, {15, 1},           //
+     {9, 9},   {7, 5},  {5, 10}, {12, 7},  {3, 6},  {10, 13}, {13, 11}, {11, 3}, {6, 14},  //
+     {8, 1},   {4, 2},  {2, 12}, {0, 8},   {15, 4}, {14, 15}, {1, 0}}};
 
 namespace pattern_detail {
 
@@ -68,6 +84,7 @@ constexpr std::uint32_t owen_scrambled(std::uint32_t fraction, std::uint32_t see
 //
 //   grid      cell centres of grid_shape(n), row by row, rounded to 2^-12 px
 //   jittered  one uniform point in each of those cells
+//   standard  standard_samples; requires has_standard_samples(n)
 //   sobol     the first n points of Sobol's (0,2)-sequence, scrambled by pixel: for n = 2^k each dyadic
 //             rectangle of area 2^-k holds exactly one
 //
@@ -90,6 +107,9 @@ inline void fill_sample_offsets(PatternKind kind, std::uint64_t seed, int px, in
     const auto c = static_cast<std::uint32_t>(columns), r = static_cast<std::uint32_t>(rows);
     if (kind == PatternKind::grid) {
       x[i] = centre(i % c, c), y[i] = centre(i / c, r);
+    } else if (kind == PatternKind::standard) {
+      const auto& place = standard_samples[n - 1 + i];
+      x[i] = static_cast<std::uint16_t>(place[0] * 256), y[i] = static_cast<std::uint16_t>(place[1] * 256);
     } else if (kind == PatternKind::jittered) {
       const auto random = random_bits(seed, px, py, i, dimension);
       x[i] = inside(i % c, c, random[0]), y[i] = inside(i / c, r, random[1]);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <glm/vec2.hpp>
 #include <nlohmann/json.hpp>
 
 #include <set>
@@ -50,6 +51,50 @@ TEST(SupersamplePattern, DependsOnTheSeedAndNothingElse) {
     }
   }
   EXPECT_EQ(pattern({{"kind", "grid"}}, 1).x, pattern({{"kind", "grid"}}, 2).x);
+}
+
+// The numbers of the Vulkan specification, standardSampleLocations.
+TEST(SupersamplePattern, HasThePlacesThatTheInterfacesAgreeOn) {
+  const std::vector<std::vector<glm::dvec2>> specified{
+      {{0.5, 0.5}},
+      {{0.75, 0.75}, {0.25, 0.25}},
+      {{0.375, 0.125}, {0.875, 0.375}, {0.125, 0.625}, {0.625, 0.875}},
+      {{0.5625, 0.3125},
+       {0.4375, 0.6875},
+       {0.8125, 0.5625},
+       {0.3125, 0.1875},
+       {0.1875, 0.8125},
+       {0.0625, 0.4375},
+       {0.6875, 0.9375},
+       {0.9375, 0.0625}},
+      {{0.5625, 0.5625},
+       {0.4375, 0.3125},
+       {0.3125, 0.625},
+       {0.75, 0.4375},
+       {0.1875, 0.375},
+       {0.625, 0.8125},
+       {0.8125, 0.6875},
+       {0.6875, 0.1875},
+       {0.375, 0.875},
+       {0.5, 0.0625},
+       {0.25, 0.125},
+       {0.125, 0.75},
+       {0.0, 0.5},
+       {0.9375, 0.25},
+       {0.875, 0.9375},
+       {0.0625, 0.0}}};
+  for (const auto& places : specified) {
+    const auto p = pattern({{"samples", places.size()}, {"kind", "standard"}});
+    EXPECT_EQ(p.period, 1);
+    ASSERT_EQ(p.x.size(), places.size());
+    std::set<std::uint16_t> columns(p.x.begin(), p.x.end()), rows(p.y.begin(), p.y.end());
+    EXPECT_EQ(columns.size(), places.size()) << "no two in one column";
+    EXPECT_EQ(rows.size(), places.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+      EXPECT_EQ(glm::dvec2(p.x[i], p.y[i]), places[i] * 4096.0) << places.size() << ", " << i;
+  }
+  EXPECT_EQ(test::run_error(nodes::supersample_pattern(), {{"samples", 5}, {"kind", "standard"}}).first,
+            "no_standard_samples");
 }
 
 TEST(SupersamplePattern, RefusesCountsOutOfRange) {
