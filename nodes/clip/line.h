@@ -1,10 +1,11 @@
-// The part of a segment inside half-spaces, by its parameter: the interval [0, 1] shrinks from plane to plane.
+// The part of a segment inside half-spaces, by its parameter: the interval [0, 1] shrinks from plane to
+// plane.
 //
-// A plane is a row n: points (x, y, z, w) with n . p >= 0 are inside. The distances at both ends, d0 and d1, say
-// all: the segment enters where d0 < 0 <= d1, leaves where d1 < 0 <= d0, at t = d0 / (d0 - d1), and is gone where
-// both are negative. Which of two crossings comes first is the sign of d0 d1' - d0' d1, and every sign is exact for
-// the numbers given: no t is compared that was rounded, and nothing is divided where a segment is parallel to a
-// plane (d0 = d1). So whether anything is left is exactly right.
+// A plane is a row n: points (x, y, z, w) with n . p >= 0 are inside. The distances at both ends, d0 and d1,
+// say all: the segment enters where d0 < 0 <= d1, leaves where d1 < 0 <= d0, at t = d0 / (d0 - d1), and is
+// gone where both are negative. Which of two crossings comes first is the sign of d0 d1' - d0' d1, and every
+// sign is exact for the numbers given: no t is compared that was rounded, and nothing is divided where a
+// segment is parallel to a plane (d0 = d1). So whether anything is left is exactly right.
 // Source: Cyrus & Beck 1978, Computers & Graphics 3:23; Liang & Barsky 1984, ACM TOG 3:1 (the rectangle); in
 // homogeneous coordinates, Blinn & Newell 1978. Departure: they compare rounded quotients.
 #pragma once
@@ -64,24 +65,33 @@ namespace line_detail {
 
 using Wide = kernels::TwoTerms<double>;
 
-// n . p exactly: at most 8 terms, of which those of products with 0 and the errors of exact ones are left out.
+// n . p exactly: at most 8 terms, of which zeros are left out.
 struct Distance {
   std::array<double, 8> term{};
   std::size_t terms = 0;
   int sign = 0;
-  Wide value{0, 0};
+  double largest = 0;  // of the terms
+  Wide value{0, 0};    // to 2^-100 of it
 
   Distance(const glm::dvec4& n, const glm::dvec4& p) {
-    kernels::Expansion<8> sum;
     for (glm::length_t i = 0; i < 4; ++i) {
+      if (n[i] == 0 || p[i] == 0) continue;
       const auto product = kernels::two_product(n[i], p[i]);
       value = kernels::plus(value, product);
-      for (const double part : {product.lo, product.hi})
-        if (part != 0) term[terms++] = part, sum.add(part);
+      largest = std::max(largest, std::fabs(product.hi));
+      term[terms++] = product.hi;
+      if (product.lo != 0) term[terms++] = product.lo;
     }
-    sign = sum.sign();
+    sign = std::fabs(value.hi) > 0x1p-95 * largest ? (value.hi > 0 ? 1 : -1) : exact_sign();
   }
   double rounded() const { return sign == 0 ? 0 : value.hi; }
+
+ private:
+  int exact_sign() const {
+    kernels::Expansion<8> sum;
+    for (std::size_t i = 0; i < terms; ++i) sum.add(term[i]);
+    return sum.sign();
+  }
 };
 
 struct Pair {
@@ -93,12 +103,9 @@ inline int determinant_sign(const Pair& a, const Pair& b) {
   const auto left = kernels::product(a.from.value, b.to.value),
              right = kernels::product(b.from.value, a.to.value);
   const double det = left.hi - right.hi, size = std::fabs(left.hi) + std::fabs(right.hi);
-  // Each distance is within 2^-100 of the largest of its terms, which may cancel; a distance that kept 2^-40 of
-  // them is right to 2^-60, far below the filter's 2^-50.
+  // A distance that kept 2^-40 of its terms is right to 2^-60 of itself, far below the filter's 2^-50.
   const auto keeps = [](const Distance& d) {
-    double largest = 0;
-    for (std::size_t i = 0; i < d.terms; ++i) largest = std::max(largest, std::fabs(d.term[i]));
-    return d.sign == 0 || std::fabs(d.value.hi) > 0x1p-40 * largest;
+    return d.sign == 0 || std::fabs(d.value.hi) > 0x1p-40 * d.largest;
   };
   if (std::fabs(det) > 0x1p-50 * size && keeps(a.from) && keeps(a.to) && keeps(b.from) && keeps(b.to))
     return det > 0 ? 1 : -1;
@@ -142,31 +149,53 @@ inline void hold(glm::dvec4& at, std::span<const glm::dvec4> planes, std::size_t
   }
 }
 
-// p + t (q - p) from the nearer end, in the box of the two.
+// A sum of products, rounded once: p + t (q - p) has no digit right where the ends are far larger than it.
+class ExactSum {
+ public:
+  void add(double x, double y) {
+    const auto product = kernels::two_product(x, y);
+    add(product.lo), add(product.hi);
+  }
+  double value() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < size_; ++i) sum += term_[i];
+    return sum;
+  }
+
+ private:
+  void add(double term) {
+    for (std::size_t i = 0; i < size_; ++i) {
+      const auto [sum, error] = kernels::two_sum(term_[i], term);
+      term_[i] = error, term = sum;
+    }
+    if (term != 0) term_[size_++] = term;
+  }
+  std::array<double, 32> term_{};
+  std::size_t size_ = 0;
+};
+
+// (d0 q - d1 p) / (d0 - d1), in the box of the two; each coordinate within 2 ulp, whatever the ends. Both ends
+// and their distances are those of numbers of about 1.
 inline glm::dvec4 point_at(const glm::dvec4& p, const glm::dvec4& q, const Pair& d) {
-  if (d.from.sign == 0) return p;
-  if (d.to.sign == 0) return q;
-  const double t = parameter(d);
-  const Wide length = kernels::plus(d.from.value, {-d.to.value.hi, -d.to.value.lo});
-  const double rest =
-      kernels::quotient(Wide{-d.to.value.hi, -d.to.value.lo}, length).hi;  // 1 - t, with its digits
+  const double length = kernels::plus(d.from.value, {-d.to.value.hi, -d.to.value.lo}).hi;
   glm::dvec4 at;
   for (glm::length_t i = 0; i < 4; ++i) {
-    const Wide difference = kernels::two_sum(q[i], -p[i]);
-    const bool near_p = t <= rest;
-    const double step = kernels::product(difference, {near_p ? t : -rest, 0}).hi;
-    at[i] = std::clamp((near_p ? p[i] : q[i]) + step, std::min(p[i], q[i]), std::max(p[i], q[i]));
+    ExactSum sum;
+    for (std::size_t k = 0; k < d.from.terms; ++k) sum.add(d.from.term[k], q[i]);
+    for (std::size_t k = 0; k < d.to.terms; ++k) sum.add(-d.to.term[k], p[i]);
+    at[i] = std::clamp(sum.value() / length, std::min(p[i], q[i]), std::max(p[i], q[i]));
   }
   return at;
 }
 
 }  // namespace line_detail
 
-// The part of the segment from p to q inside all planes, ends included, and what every plane said to `visit` until
-// one left nothing. Nothing where a number is not finite. A segment without length is inside or not. Of planes that
-// cut at one t the first counts.
+// The part of the segment from p to q inside all planes, ends included, and what every plane said to `visit`
+// until one left nothing. Nothing where a number is not finite. A segment without length is inside or not. Of
+// planes that cut at one t the first counts.
 //   t          within 2 ulp, and exactly 0 and 1 where an end lies on the plane
-//   from, to   the ends as given where nothing is cut; cut by -w <= x <= w or by x >= c (w = 1) they lie on the plane
+//   from, to   the ends as given where nothing is cut; cut by -w <= x <= w or by x >= c (w = 1) they lie on
+//   the plane
 //              exactly, so that what was clipped is not clipped again
 // Exact while entries, brought to about 1 together, are 0 or above 2^-250. Cost: some 200 operations a plane.
 template <class Visit>
@@ -201,8 +230,10 @@ std::optional<Part> clip_segment(const glm::dvec4& p, const glm::dvec4& q, std::
     if (!left) return std::nullopt;
   }
   const auto cut_at = [&](const Pair& d, std::size_t k) {
-    glm::dvec4 at = line_detail::point_at(p, q, d);
-    if (d.from.sign != 0 && d.to.sign != 0) line_detail::hold(at, planes, k);
+    if (d.from.sign == 0) return p;
+    if (d.to.sign == 0) return q;
+    glm::dvec4 at = line_detail::point_at(p * scale, q * scale, d) / scale;
+    line_detail::hold(at, planes, k);
     return at;
   };
   if (first) part.from = cut_at(*first, *part.from_plane);

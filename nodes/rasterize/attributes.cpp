@@ -71,6 +71,18 @@ std::optional<AttributeDomain> domain_of(const Column& c) {
 
 bool is_uv(const Column& c) { return is_uv_column(c.name()) && c.width() == 2; }
 
+// World positions have slopes, too: how much of space a pixel sees.
+bool has_slopes(const Column& c) { return is_uv(c) || (c.name() == "world" && c.width() == 3); }
+
+std::vector<std::string> slope_names(const Column& c) {
+  const std::string prefix = is_uv(c) ? c.name() : "P";
+  std::vector<std::string> names;
+  for (const char* along : {"_dx", "_dy"})
+    for (const char* of : is_uv(c) ? std::vector{"du", "dv"} : std::vector{"dx", "dy", "dz"})
+      names.push_back(prefix + "." + of + along);
+  return names;
+}
+
 // The names of a column's value planes (runtime/buffers/image.h).
 std::vector<std::string> value_names(const Column& c) {
   if (is_uv(c)) return {c.name() + ".u", c.name() + ".v"};
@@ -93,13 +105,12 @@ std::vector<Source> add_planes(const Mesh& mesh, bool interpolates_normals, Plan
   for (const Ref<Column>& c : mesh.columns) {
     const auto domain = domain_of(*c);
     if (!domain || c->name() == "position") continue;
-    const bool slopes = is_uv(*c);
+    const bool slopes = has_slopes(*c);
     sources.push_back({as_real<R>(c), *domain, static_cast<std::size_t>(c->width()), planes.size(), slopes,
                        !interpolates_normals && c->name() == "normal"});
     for (const std::string& name : value_names(*c)) planes.push_back({name, plane_kind_of<R>});
-    if (slopes)
-      for (const char* slope : {".du_dx", ".dv_dx", ".du_dy", ".dv_dy"})
-        planes.push_back({c->name() + slope, plane_kind_of<R>});
+    if (!slopes) continue;
+    for (const std::string& name : slope_names(*c)) planes.push_back({name, plane_kind_of<R>});
   }
   return sources;
 }
@@ -123,7 +134,8 @@ Verdict perspective(const Inputs& in, const Params& p, const Context& ctx) {
   });
 }
 
-// A corner's numbers that stand for a whole face are finite, without -0: a + u (b - a) is then exactly a for b = a.
+// A corner's numbers that stand for a whole face are finite, without -0: a + u (b - a) is then exactly a for
+// b = a.
 template <class R>
 std::size_t first_changing_face(const Mesh& mesh, const Column& column, AttributeDomain domain) {
   const R* data = static_cast<const R*>(column.data());
@@ -271,7 +283,7 @@ NodeType nodes::rasterize_attributes() {
       .effect(normals_name, normals, "Normals are interpolated between the corners of each face.",
               {"sample", 0.5})  // 0 to 2.0
       .output("points", &Outputs::points,
-              "id, uv with derivatives, N, P, w and other columns; 0 where nothing is seen.");
+              "id, uv and P with derivatives, N, w and other columns; 0 where nothing is seen.");
 }
 
 }  // namespace frustum

@@ -42,8 +42,8 @@ NodeType nodes::texture_image() {
           .foreign()
           .input("image", &Inputs::image,
                  "R, G, B (or one plane, taken as grey) and A, converted from the image's colour space.")
-          .param("wrap_u", &Params::wrap_u, "What lies beyond u = 0 and 1.")
-          .param("wrap_v", &Params::wrap_v, "What lies beyond v = 0 and 1.")
+          .param("wrap_u", &Params::wrap_u, "What lies beyond u = 0 and 1; border is transparent black.")
+          .param("wrap_v", &Params::wrap_v, "What lies beyond v = 0 and 1; border is transparent black.")
           .param("pyramid", &Params::pyramid,
                  "Whether smaller levels are made, which trilinear lookup needs; a third more memory.")
           .param(

@@ -2,6 +2,7 @@
 
 #include "nodes/texture.h"
 #include "runtime/buffers/mesh.h"
+#include "runtime/buffers/minification.h"
 #include "runtime/buffers/real_rows.h"
 #include "runtime/buffers/texture_facts.h"
 #include "runtime/core/node_type.h"
@@ -24,6 +25,7 @@ struct Inputs {
 };
 struct Params {
   Lookup filter = Lookup::trilinear;
+  double max_anisotropy = 16;
 };
 struct Outputs {
   Tiled<Image> image;
@@ -41,7 +43,7 @@ struct Skin {
 
 struct State {
   Precision precision;
-  Lookup filter;
+  kernels::Filtering filter;
   std::vector<Skin> skins;             // at least one
   std::vector<std::uint32_t> skin_of;  // by face; empty: all have the first
   std::array<RealPlane, 4> color{};    // of the vertices; the last one, opacity, where they have it
@@ -50,7 +52,8 @@ struct State {
 
 static_assert(static_cast<int>(Wrap::repeat) == static_cast<int>(kernels::EdgeRule::repeat) &&
               static_cast<int>(Wrap::clamp) == static_cast<int>(kernels::EdgeRule::clamp) &&
-              static_cast<int>(Wrap::mirror) == static_cast<int>(kernels::EdgeRule::mirror));
+              static_cast<int>(Wrap::mirror) == static_cast<int>(kernels::EdgeRule::mirror) &&
+              static_cast<int>(Wrap::border) == static_cast<int>(kernels::EdgeRule::border));
 constexpr kernels::EdgeRule edge_rule(Wrap w) { return static_cast<kernels::EdgeRule>(w); }
 
 // ----- preparation
@@ -91,8 +94,8 @@ Wish wish_of(const Inputs& in, const Params& p, const Context& ctx) {
 
 constexpr std::array uv_planes{".u", ".v", ".du_dx", ".dv_dx", ".du_dy", ".dv_dy"};
 
-// Whether read_real() would take the planes of a set of coordinates. What is known without them is still refused where
-// they are not there, so that whether a graph is right does not depend on what a texture holds.
+// Whether read_real() would take the planes of a set of coordinates. What is known without them is still
+// refused where they are not there, so that whether a graph is right does not depend on what a texture holds.
 bool readable(const Wish& w, const std::string& uv, std::size_t planes) {
   const Frame& f = w.in.points.frame();
   for (std::size_t i = 0; i < planes; ++i) {
@@ -110,21 +113,23 @@ Skin skin_of_texture(const Wish& w, Ref<Texture> texture, std::uint32_t uv_set) 
   if (const auto* pyramid = std::get_if<MipPyramid>(&texture->source)) s.alpha_cutoff = pyramid->alpha_cutoff;
   const std::string uv = uv_column_name(uv_set);
   const bool board = std::holds_alternative<Checker>(texture->source);
-  const bool filters = w.filter == Lookup::trilinear || (board && w.filter == Lookup::bilinear);
+  const bool filters = w.filter > Lookup::bilinear || (board && w.filter == Lookup::bilinear);
   const std::size_t planes = filters ? 6 : 2;
   const bool known = readable(w, uv, planes);
   if (known && !w.all_lookups) s.constant = constant_color(*texture);
   if (known && !w.lookup && !s.constant) s.constant = {1, 1, 1, 1};
   if (s.constant) return s;
-  // A pyramid of one level, or one that is asked not to be used, is read as bilinear lookup does.
+  // Of a pyramid of one level, or one that is asked not to be used, that level is read, and derivatives by
+  // ewa alone.
   const bool base_only = known && !board && !w.all_levels && (!w.levels || s.levels.size() == 1);
   if (base_only) s.levels.resize(1);
-  for (std::size_t i = 0; i < (base_only ? 2 : planes); ++i)
+  for (std::size_t i = 0; i < (base_only && w.filter != Lookup::ewa ? 2 : planes); ++i)
     s.uv[i] = read_real(w.in.points, uv + uv_planes[i], w.precision);
   return s;
 }
 
-// What is not there is white. Forced, it is looked up like any texture: in one texel, at the points' first coordinates.
+// What is not there is white. Forced, it is looked up like any texture: in one texel, at the points' first
+// coordinates.
 Skin white_skin(const Wish& w) {
   const std::string uv = uv_column_name(0);
   if (!w.all_lookups || !readable(w, uv, uv_planes.size())) return {};
@@ -212,7 +217,7 @@ bool is_white(const Skin& s) {
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
   const Wish wish = wish_of(in, p, ctx);
-  State s{ctx.precision, p.filter, {}, {}, {}, -1};
+  State s{ctx.precision, {p.filter, p.max_anisotropy}, {}, {}, {}, -1};
   dress(wish, s);
   s.id = s.skin_of.empty() ? in.points.try_read("id").value_or(-1) : in.points.read("id");
   const PlaneKind kind = real_kind(ctx.precision);
@@ -234,47 +239,67 @@ std::uint64_t samples_of(const Inputs& in) {
   return static_cast<std::uint64_t>(f.window.area()) * static_cast<std::uint64_t>(f.samples());
 }
 
-// The textures that points may show, each with the name of what has it.
-std::vector<std::pair<std::string, const Texture*>> textures_of(const Inputs& in) {
-  if (in.texture) return {{"the texture", in.texture->get()}};
-  std::vector<std::pair<std::string, const Texture*>> all;
-  const auto add = [&](const Material& m) {
+// The textures that points may show, each with the name of what has it, and how it lies on the mesh.
+struct Shown {
+  std::string name;
+  const Texture* texture;
+  Skinning skin;
+};
+
+std::vector<Shown> textures_of(const Inputs& in) {
+  if (in.texture) return {{"the texture", in.texture->get(), {}}};
+  std::vector<Shown> all;
+  const auto add = [&](const Material& m, std::optional<std::uint32_t> of) {
     if (m.texture)
-      all.emplace_back(m.name.empty() ? "the texture of a material"
-                                      : fmt::format("the texture of material \"{}\"", m.name),
-                       m.texture.get());
+      all.push_back({m.name.empty() ? "the texture of a material"
+                                    : fmt::format("the texture of material \"{}\"", m.name),
+                     m.texture.get(),
+                     {m.uv_set, m.texture_from_uv, of}});
   };
   if (in.material)
-    add(**in.material);
+    add(**in.material, {});
   else if (in.mesh && (*in.mesh)->materials)
-    for (const Material& m : (*in.mesh)->materials->materials) add(m);
+    for (std::uint32_t m = 0; m < (*in.mesh)->materials->materials.size(); ++m)
+      add((*in.mesh)->materials->materials[m], m);
   return all;
 }
 
 Verdict texture_lookup(const Inputs& in, const Params&, const Context&) {
   const std::uint64_t samples = samples_of(in);
   const auto textures = textures_of(in);
-  for (const auto& [name, texture] : textures)
-    if (!constant_color(*texture)) return on(fmt::format("{} is not of one colour", name), samples);
+  for (const Shown& shown : textures)
+    if (!constant_color(*shown.texture))
+      return on(fmt::format("{} is not of one colour", shown.name), samples);
   if (textures.empty()) return off_exact("no material has a texture", samples);
   return off_exact("every texel of every level has the same colour", samples);
 }
 
+// Level 0 is all that is read where no pixel sees more than a texel: 0.98 leaves room for the level's own
+// rounding.
 Verdict mip_levels(const Inputs& in, const Params& p, const Context&) {
-  if (p.filter != Lookup::trilinear) return off_user("the graph asks for a filter that reads level 0 only");
+  constexpr double one_texel = 0.98;
+  if (p.filter <= Lookup::bilinear) return off_user("the graph asks for a filter that reads level 0 only");
   const std::uint64_t samples = samples_of(in);
-  for (const auto& [name, texture] : textures_of(in))
-    if (const auto* pyramid = std::get_if<MipPyramid>(&texture->source);
-        pyramid != nullptr && pyramid->levels.size() > 1 && !constant_color(*texture))
-      return on(fmt::format("{} has {} levels", name, pyramid->levels.size()), samples);
+  bool any = false;
+  for (const Shown& shown : textures_of(in)) {
+    const auto* pyramid = std::get_if<MipPyramid>(&shown.texture->source);
+    if (pyramid == nullptr || pyramid->levels.size() < 2 || constant_color(*shown.texture)) continue;
+    any = true;
+    const auto has = fmt::format("{} has {} levels", shown.name, pyramid->levels.size());
+    if (!in.mesh) return on(has, samples);
+    const auto face = first_minified_face(**in.mesh, *pyramid, shown.skin, one_texel);
+    if (face)
+      return on(fmt::format("{}, and a pixel of face {} may see more than one texel", has, *face), samples);
+  }
+  if (any) return off_exact("no pixel of the mesh sees more than one texel of level 0", samples);
   return off_exact("no texture that is looked up has a second level", samples);
 }
 
 // Whether colours are other than opaque; what is behind is another node's to know.
 Verdict transparency(const Inputs& in, const Params&, const Context&) {
-  for (const auto& [name, texture] : textures_of(in))
-    if (may_be_clear(*texture))
-      return on(fmt::format("{} has an opacity of {:.3g}", name, least_opacity(*texture)));
+  for (const Shown& shown : textures_of(in))
+    if (may_be_clear(*shown.texture))
+      return on(fmt::format("{} has an opacity of {:.3g}", shown.name, least_opacity(*shown.texture)));
   const Column* color = in.mesh && !in.texture ? (*in.mesh)->find("color") : nullptr;
   if (color != nullptr && color->width() == 4) {
     const Ref<Column> rgba = (*in.mesh)->real<double>("color");
@@ -396,7 +421,8 @@ class Sampler {
     const kernels::UvRows<R> uv{row[0], row[1], row[2], row[3], row[4], row[5], id};
     if (const auto* board = std::get_if<Checker>(&skin.texture->source))
       return look_up_row<R>(checker_colors<R>(*board), s_.filter, uv, n_, to);
-    const Lookup filter = row[2] == nullptr ? std::min(s_.filter, Lookup::bilinear) : s_.filter;
+    kernels::Filtering filter = s_.filter;
+    if (row[2] == nullptr && filter.kind == Lookup::trilinear) filter.kind = Lookup::bilinear;
     const auto& pyramid = std::get<MipPyramid>(skin.texture->source);
     look_up_row<R>(kernels::TexelPyramid{skin.levels, edge_rule(pyramid.wrap_u), edge_rule(pyramid.wrap_v)},
                    filter, uv, n_, to);
@@ -448,6 +474,7 @@ NodeType nodes::texture_sample() {
           "Looks textures up at the (u, v) of visible points and scales them by vertex colours; a NaN u or v "
           "is 0.")
       .cite("Williams 1983, Pyramidal parametrics, doi:10.1145/800059.801126")
+      .cite("Mitchell & Netravali 1988 (cubics); Greene & Heckbert 1986; Heckbert 1989 (ewa)")
       .covers(30, 33)
       .input("points", &Inputs::points,
              "Visible points with the planes of their texture coordinates; transparent black where none is.")
@@ -457,11 +484,18 @@ NodeType nodes::texture_sample() {
              "The mesh the points were seen on: each face takes its material's texture, white where it has "
              "none.")
       .input("material", &Inputs::material, "One material for everything, instead of the mesh's own.")
-      .param("filter", &Params::filter,
-             "What stands for a pixel: one texel, four of level 0, or two levels by footprint.")
-      .knob({"nearest", "bilinear", "trilinear"},
-            "nearest and bilinear alias where the texture is minified; trilinear reads eight texels and "
-            "blurs a little.")
+      .param(
+          "filter", &Params::filter,
+          "What stands for a pixel: a texel, four, two levels of four (or of 16, the cubics), or an ellipse.")
+      .knob({"nearest", "bilinear", "trilinear", "ewa"},
+            "nearest and bilinear alias where the texture is minified; trilinear blurs at a slant, ewa does "
+            "not.")
+      .param(
+          "max_anisotropy", &Params::max_anisotropy,
+          "Of ewa: how slender an ellipse may be; raising it keeps more at a slant, and reads more texels.",
+          {.range = between(1, 64)})
+      .knob({"1", "2", "4", "8", "16", "32"},
+            "A plane seen at a slant of 1 to k blurs k / max_anisotropy-fold beyond it.")
       .effect(lookup_name, texture_lookup, "Textures are read at the (u, v) of every point.",
               {"sample",
                45})  // tests/bench/effects_bench.cpp, one thread, a machine shared with others: 41 to 52

@@ -9,8 +9,8 @@ namespace frustum {
 
 /// Colours of `n` points; see nodes/kernels/texture_lookup.h. Source: TexelPyramid or CheckerColors<R>.
 template <std::floating_point R, class Source>
-void look_up_row(const Source& source, kernels::Lookup filter, const kernels::UvRows<R>& in, std::size_t n,
-                 const kernels::RgbaRows<R>& out) {
+void look_up_row(const Source& source, const kernels::Filtering& filter, const kernels::UvRows<R>& in,
+                 std::size_t n, const kernels::RgbaRows<R>& out) {
   if constexpr (sizeof(R) == 4)
     kernels::simd::look_up(source, filter, in, n, out);
   else

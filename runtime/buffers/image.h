@@ -17,7 +17,7 @@ namespace frustum {
 //   uv.u uv.v                  real  texture coordinates
 //   uv.du_dx uv.dv_dx uv.du_dy uv.dv_dy   their screen derivatives, per pixel; uv1.u ... of further sets
 //   N.x N.y N.z                real  interpolated world-space normal, not renormalised
-//   P.x P.y P.z                real  world-space position
+//   P.x P.y P.z                real  world-space position; P.dx_dx P.dy_dx P.dz_dx ... its change per pixel
 //   color.x color.y color.z    real  vertex colour, linear Rec.709 (color.w: opacity)
 //   w                          real  distance along the view axis (clip w)
 // and any other column NAME of the mesh as NAME.x NAME.y NAME.z NAME.w (NAME alone for width 1).

@@ -99,8 +99,8 @@ struct Ops {
       return {c};
     }
     MipPyramid p;
-    p.wrap_u = r.choice(Wrap::mirror);
-    p.wrap_v = r.choice(Wrap::mirror);
+    p.wrap_u = r.choice(Wrap::border);
+    p.wrap_v = r.choice(Wrap::border);
     p.alpha_cutoff = r.value<double>();
     for (std::size_t n = r.count(1); n > 0; --n) {
       const int width = r.value<int>(), height = r.value<int>();

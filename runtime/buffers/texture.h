@@ -14,10 +14,11 @@
 
 namespace frustum {
 
-enum class Wrap : std::uint8_t { repeat, clamp, mirror };
+// border: transparent black beyond the picture.
+enum class Wrap : std::uint8_t { repeat, clamp, mirror, border };
 constexpr auto choices(Wrap) {
   return std::array{std::pair{Wrap::repeat, "repeat"}, std::pair{Wrap::clamp, "clamp"},
-                    std::pair{Wrap::mirror, "mirror"}};
+                    std::pair{Wrap::mirror, "mirror"}, std::pair{Wrap::border, "border"}};
 }
 
 // Squares of side 1/scale in u and v; `even` where floor(scale u) + floor(scale v) is even.

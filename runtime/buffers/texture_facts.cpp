@@ -4,10 +4,16 @@
 #include <cmath>
 
 namespace frustum {
+namespace {
+
+bool has_border(const MipPyramid& p) { return p.wrap_u == Wrap::border || p.wrap_v == Wrap::border; }
+
+}  // namespace
 
 std::optional<std::array<float, 4>> constant_color(const Texture& t) {
   const auto* pyramid = std::get_if<MipPyramid>(&t.source);
-  if (pyramid == nullptr || pyramid->levels.empty() || pyramid->levels[0].rgba.size() < 4)
+  if (pyramid == nullptr || pyramid->levels.empty() || pyramid->levels[0].rgba.size() < 4 ||
+      has_border(*pyramid))
     return std::nullopt;
   std::array<float, 4> color{};
   std::copy_n(pyramid->levels[0].rgba.begin(), 4, color.begin());
@@ -28,6 +34,7 @@ bool may_be_clear(const Texture& t) {
 float least_opacity(const Texture& t) {
   const auto* pyramid = std::get_if<MipPyramid>(&t.source);
   if (pyramid == nullptr || pyramid->levels.empty()) return 1;
+  if (has_border(*pyramid)) return 0;
   constexpr std::size_t most_texels = std::size_t{1} << 16;
   const auto& levels = pyramid->levels;
   auto level = std::find_if(levels.begin(), levels.end(),

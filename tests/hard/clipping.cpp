@@ -1,4 +1,5 @@
 // Clipping; culling stands in culling.cpp.
+#include "nodes/clip/line.h"
 #include "nodes/kernels/clip.h"
 #include "nodes/kernels/screen_triangle.h"
 #include "nodes/kernels/vector.h"
@@ -10,6 +11,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -322,6 +324,133 @@ void at_infinity(Trial& t) {
       });
 }
 
+// ----- segments against the unit square
+
+using Segment2 = std::array<double, 4>;  // x0 y0 x1 y1
+
+struct ExactInterval {
+  Rational from = 0, to = 1;
+};
+std::optional<ExactInterval> exact_interval(const Segment2& s) {
+  ExactInterval t;
+  const Rational x0(s[0]), y0(s[1]), dx = Rational(s[2]) - x0, dy = Rational(s[3]) - y0;
+  const std::array<std::array<Rational, 2>, 4> sides{
+      {{-dx, x0}, {dx, Rational(1 - x0)}, {-dy, y0}, {dy, Rational(1 - y0)}}};
+  for (const auto& [p, q] : sides) {
+    if (p == 0 && q < 0) return std::nullopt;
+    if (p == 0) continue;
+    const Rational r = q / p;
+    if (p < 0 && r > t.from) t.from = r;
+    if (p > 0 && r < t.to) t.to = r;
+  }
+  return t.from <= t.to ? std::optional(t) : std::nullopt;
+}
+
+// Liang and Barsky without a branch for p = 0: what is parallel to a side divides by it.
+bool textbook_leaves_something(const Segment2& s) {
+  const double dx = s[2] - s[0], dy = s[3] - s[1];
+  double from = 0, to = 1;
+  for (const auto& [p, q] : {std::pair{-dx, s[0]}, {dx, 1 - s[0]}, {-dy, s[1]}, {dy, 1 - s[1]}}) {
+    const double r = q / p;
+    if (p < 0)
+      from = std::max(from, r);
+    else
+      to = std::min(r, to);
+  }
+  return from <= to;
+}
+
+const auto unit_square = frustum::clip::rectangle_planes({0, 0}, {1, 1});
+
+std::optional<frustum::clip::Part> robust_part(const Segment2& s) {
+  return frustum::clip::clip_segment({s[0], s[1], 0, 1}, {s[2], s[3], 0, 1}, unit_square,
+                                     [](const frustum::clip::Crossing&) {});
+}
+
+void parallel_segments(Trial& t) {
+  std::vector<Segment2> inputs;
+  const double denormal = std::numeric_limits<double>::denorm_min(), places[] = {-1, -0.0, 0.0, 0.5, 1, 2};
+  for (const double x : places)
+    for (const double y : places)
+      for (const double d : {0.0, -0.0, 0x1p-60, -0x1p-60})
+        for (const double e : {0.0, -0.0, 0.25, -3.0})
+          inputs.push_back({x, y, x + d, y + e}), inputs.push_back({x, y, x + e, y - d});
+  inputs.push_back({0, 0, 0x1p-200, 1}), inputs.push_back({0.5, 1 + 0x1p-52, 3, 1 + 0x1p-52});
+  inputs.push_back({denormal, 0, denormal, 1});
+  for (std::size_t n = t.samples(2000, 200000); n-- > 0;) {
+    // Through a corner, to the last place.
+    const double a = t.random.uniform(0.1, 5), b = t.random.uniform(0.1, 5), s = t.random.uniform(0.1, 5);
+    inputs.push_back({1 - a, 1 + b, 1 + a * s, 1 - b * s});
+  }
+  for (const Segment2& s : inputs) {
+    const auto want = exact_interval(s);
+    const auto got = robust_part(s);
+    bool wrong = got.has_value() != want.has_value();
+    if (got && want)
+      wrong = distance(got->t_from, want->from) > 0x1p-51 || distance(got->t_to, want->to) > 0x1p-51;
+    t.tally(textbook_leaves_something(s) != want.has_value(), wrong, {s[0], s[1], s[2], s[3]});
+  }
+  t.price_over(inputs, textbook_leaves_something,
+               [](const Segment2& s) { return robust_part(s).has_value(); });
+}
+
+// Cohen and Sutherland in float: (x, y) of both ends; an outcode of 0 is taken.
+std::array<float, 4> textbook_ends(std::array<float, 4> s) {
+  const auto outcode = [](float x, float y) {
+    return (x < 0 ? 1 : x > 1 ? 2 : 0) | (y < 0 ? 4 : y > 1 ? 8 : 0);
+  };
+  for (int step = 0; step < 8; ++step) {
+    const int one = outcode(s[0], s[1]), two = outcode(s[2], s[3]);
+    if ((one | two) == 0 || (one & two) != 0) break;
+    const int out = one != 0 ? one : two;
+    float x = 0, y = 0;
+    if ((out & 12) != 0) {
+      y = (out & 8) != 0 ? 1.0F : 0.0F;
+      x = s[0] + (s[2] - s[0]) * (y - s[1]) / (s[3] - s[1]);
+    } else {
+      x = (out & 2) != 0 ? 1.0F : 0.0F;
+      y = s[1] + (s[3] - s[1]) * (x - s[0]) / (s[2] - s[0]);
+    }
+    (one != 0 ? s[0] : s[2]) = x, (one != 0 ? s[1] : s[3]) = y;
+  }
+  return s;
+}
+
+void segments_of_the_largest_floats(Trial& t) {
+  std::vector<std::array<float, 4>> inputs{{-1e25F, -1e25F, 1e25F, 2e25F},
+                                           {-3e38F, 0.25F, 3e38F, 0.5F},
+                                           {-3e38F, -3e38F, 3e38F, 3e38F},
+                                           {0.5F, -3e38F, 0.25F, 3e38F}};
+  for (std::size_t n = t.samples(500, 50000); n-- > 0;) {
+    const float size = std::ldexp(1.0F, 80 + static_cast<int>(t.random.below(47)));
+    const auto inside = [&] { return static_cast<float>(t.random.uniform(0.01, 0.99)); };
+    // Nearly level, through the square.
+    inputs.push_back({-size * inside(), inside(), size * inside(), inside()});
+  }
+  for (const auto& s : inputs) {
+    const Segment2 wide{s[0], s[1], s[2], s[3]};
+    const auto want = exact_interval(wide);
+    const auto got = robust_part(wide);
+    const auto textbook = textbook_ends(s);
+    t.require(got.has_value() == want.has_value(), "kept where the exact segment meets the square",
+              {s[0], s[1], s[2], s[3]});
+    if (!want || !got) continue;
+    double naive_error = 0, error = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Rational& at = i < 2 ? want->from : want->to;
+      const Rational exact = Rational(wide[i % 2]) + at * (Rational(wide[2 + i % 2]) - Rational(wide[i % 2]));
+      const auto k = static_cast<glm::length_t>(i % 2);
+      const double ours = i < 2 ? got->from[k] : got->to[k];
+      naive_error = std::max(naive_error, distance(textbook[i], exact, Rational(u32)));
+      error = std::max(error, distance(static_cast<float>(ours), exact, Rational(u32)));
+    }
+    t.measure(std::isfinite(naive_error) ? naive_error : double{largest}, error, {s[0], s[1], s[2], s[3]});
+  }
+  t.price_over(inputs, textbook_ends, [](const std::array<float, 4>& s) {
+    return robust_part({s[0], s[1], s[2], s[3]}).has_value();
+  });
+}
+
 }  // namespace
 
 std::vector<HardCase> clipping() {
@@ -348,6 +477,12 @@ std::vector<HardCase> clipping() {
       {"CLP-08", "triangles with one or three corners at w = 0", "divide by w, rasterize",
        "clip, viewport and fill kernels", "rays through pixels, 113 bits",
        "finite; the pixels of the rays and of w = 1e-30", "wrong pixels", 0, at_infinity},
+      {"CLP-12", "segments along sides, on sides, of no length, by +-0 and 2^-60; through corners",
+       "Liang-Barsky, q / p whatever p is", "clip::clip_segment", "rationals",
+       "kept exactly where the rationals say, and as far", "wrong segments", 0, parallel_segments},
+      {"CLP-13", "segments from -3e38 to 3e38 through the unit square", "Cohen-Sutherland in float",
+       "clip::clip_segment", "rationals", "ends within 2 u of the square's side", "u", 2,
+       segments_of_the_largest_floats},
   };
 }
 

@@ -1,4 +1,5 @@
 // Texture.
+#include "nodes/kernels/quad_map.h"
 #include "nodes/kernels/simd/interpolate_attributes.h"
 #include "nodes/kernels/simd/texture_lookup.h"
 #include "nodes/kernels/texture_lookup.h"
@@ -272,6 +273,140 @@ void one_texel_a_pixel(Trial& t) {
     }
 }
 
+// ----- the homography
+
+using Corners = std::array<glm::dvec2, 4>;
+using Exact2 = std::array<Rational, 2>;
+
+// x = (a u + b v + c) / (g u + h v + 1) from the eight equations of the corners, by elimination with pivots.
+std::array<double, 8> textbook_homography(const Corners& p) {
+  constexpr std::array<std::array<int, 2>, 4> uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  std::array<std::array<double, 9>, 8> m{};
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double u = uv[i][0], v = uv[i][1], at = p[i][static_cast<glm::length_t>(k)];
+      auto& row = m[2 * i + k];
+      row[3 * k] = u, row[3 * k + 1] = v, row[3 * k + 2] = 1;
+      row[6] = -u * at, row[7] = -v * at, row[8] = at;
+    }
+  for (std::size_t c = 0; c < 8; ++c) {
+    std::size_t best = c;
+    for (std::size_t r = c; r < 8; ++r)
+      if (std::fabs(m[r][c]) > std::fabs(m[best][c])) best = r;
+    std::swap(m[c], m[best]);
+    for (std::size_t r = 0; r < 8; ++r) {
+      if (r == c) continue;
+      const double f = m[r][c] / m[c][c];
+      for (std::size_t k = c; k < 9; ++k) m[r][k] -= f * m[c][k];
+    }
+  }
+  std::array<double, 8> h;
+  for (std::size_t i = 0; i < 8; ++i) h[i] = m[i][8] / m[i][i];
+  return h;
+}
+glm::dvec2 textbook_pixel(const Corners& p, const glm::dvec2& at) {
+  const auto h = textbook_homography(p);
+  const double w = h[6] * at.x + h[7] * at.y + 1;
+  return {(h[0] * at.x + h[1] * at.y + h[2]) / w, (h[3] * at.x + h[4] * at.y + h[5]) / w};
+}
+// Heckbert's closed form, exactly.
+Exact2 exact_pixel(const Corners& p, const glm::dvec2& at) {
+  const auto x = [&](std::size_t i) { return Rational(p[i].x); };
+  const auto y = [&](std::size_t i) { return Rational(p[i].y); };
+  const Rational dx1 = x(1) - x(2), dx2 = x(3) - x(2), sx = x(0) - x(1) + x(2) - x(3), dy1 = y(1) - y(2),
+                 dy2 = y(3) - y(2), sy = y(0) - y(1) + y(2) - y(3), det = dx1 * dy2 - dx2 * dy1;
+  const Rational g = (sx * dy2 - dx2 * sy) / det, h = (dx1 * sy - sx * dy1) / det, u(at.x), v(at.y);
+  const Rational w = g * u + h * v + 1;
+  return {Rational(((x(1) - x(0) + g * x(1)) * u + (x(3) - x(0) + h * x(3)) * v + x(0)) / w),
+          Rational(((y(1) - y(0) + g * y(1)) * u + (y(3) - y(0) + h * y(3)) * v + y(0)) / w)};
+}
+
+void nearly_collinear_corners(Trial& t) {
+  std::vector<std::pair<Corners, glm::dvec2>> inputs;
+  const Corners given{glm::dvec2{0, 0}, {1, 0}, {2, 1e-9}, {0, 1}};
+  for (const double offset : {0.0, 1e5})
+    for (std::size_t n = t.samples(200, 5000); n-- > 0;) {
+      Corners c = given;
+      c[2].y = std::fabs(t.random.magnitude(-40, -8));
+      for (auto& p : c) p += glm::dvec2(offset, offset);
+      c[2].y = std::max(c[2].y, std::nextafter(offset, 1e9));  // convex still
+      inputs.emplace_back(c, glm::dvec2(t.random.uniform(0, 1), t.random.uniform(0, 1)));
+    }
+  const auto ours = [](const std::pair<Corners, glm::dvec2>& in) {
+    return kernels::QuadMap::of(in.first, kernels::QuadMapKind::projective)->pixel_of(in.second);
+  };
+  const auto theirs = [](const std::pair<Corners, glm::dvec2>& in) {
+    return textbook_pixel(in.first, in.second);
+  };
+  for (const auto& in : inputs) {
+    const Exact2 want = exact_pixel(in.first, in.second);
+    // In units of 2^-53 of the coordinates, which the corners themselves are given to.
+    const Rational unit = Rational(0x1p-53) * Rational(std::max(1.0, std::fabs(in.first[0].x)));
+    const auto error = [&](const glm::dvec2& px) {
+      const double e = std::max(distance(px.x, want[0], unit), distance(px.y, want[1], unit));
+      return std::isfinite(e) ? e : 1e300;
+    };
+    t.measure(error(theirs(in)), error(ours(in)), {in.first[2].x, in.first[2].y, in.second.x, in.second.y});
+  }
+  t.price_over(inputs, theirs, ours);
+}
+
+// ----- needles
+
+// Heckbert's ellipse from the derivatives alone: A x^2 + B x y + C y^2 < F over its box. How many texels that
+// looks at; 0 where a coefficient is not finite.
+double textbook_texels(double sx, double tx, double sy, double ty) {
+  const double a = tx * tx + ty * ty, b = -2 * (sx * tx + sy * ty), c = sx * sx + sy * sy,
+               f = sx * ty - sy * tx, f2 = f * f, det = 4 * a * c - b * b;
+  const double width = 2 * std::sqrt(4 * c * f2 / det), height = 2 * std::sqrt(4 * a * f2 / det);
+  return std::isfinite(a / f2 + b / f2 + c / f2 + width + height) ? (width + 1) * (height + 1) : 0;
+}
+
+void needles(Trial& t) {
+  constexpr double most = 16;
+  constexpr int size = 1024, last = 10;
+  struct Needle {
+    double du_dx, dv_dx, du_dy, dv_dy;
+  };
+  std::vector<Needle> inputs{{1, 0, 0, 0}, {0, 0, 0, 0}, {0.1, 0.1, 0.1, 0.1}, {1, 0, 0, 1e-6}};
+  for (std::size_t n = t.samples(400, 20000); n-- > 0;) {
+    const double length = std::fabs(t.random.magnitude(-6, 4)), thin = length * 1e-6,
+                 turn = t.random.uniform(0, 6.28);
+    inputs.push_back(
+        {length * std::cos(turn), length * std::sin(turn), -thin * std::sin(turn), thin * std::cos(turn)});
+  }
+  std::vector<std::vector<float>> texels;
+  std::vector<kernels::TexelLevel> levels;
+  for (int side = size; side > 0; side /= 2) {
+    auto& level = texels.emplace_back(static_cast<std::size_t>(side * side) * 4);
+    for (float& c : level) c = static_cast<float>(t.random.uniform(0, 1));
+    levels.push_back({side, side, level.data()});
+  }
+  const kernels::TexelPyramid pyramid{levels};
+  const auto rows = [](const Needle& n, const double& zero) {
+    return kernels::UvRows<double>{&zero, &zero, &n.du_dx, &n.dv_dx, &n.du_dy, &n.dv_dy, nullptr};
+  };
+  const double zero = 0.3;
+  for (const Needle& n : inputs) {
+    const auto f = kernels::widened(kernels::footprint<double>(rows(n, zero), 0, size, size), most);
+    const double level = kernels::ewa_level(f, last);
+    std::size_t read = 0;
+    for (const double l : {std::floor(level), std::floor(level) + 1}) {
+      if (l > last) continue;
+      const double shrink = std::min(1.0, 4096 / f.minor), s = std::exp2(-2 * l) * shrink * shrink * 2 / 3;
+      kernels::visit_ellipse(0.1, 0.2, f.ss * s + 4.0 / 3, f.st * s, f.tt * s + 4.0 / 3,
+                             [&](const kernels::EllipseRow<double>& row) {
+                               for (int i = row.first; i <= row.last; ++i) read += row.weight(i) > 0 ? 1 : 0;
+                             });
+    }
+    const auto c = kernels::elliptical<kernels::ColorSum<double>>(pyramid, rows(n, zero), 0, most);
+    bool robust = read > 0 && static_cast<double>(read) <= 50 * most;
+    for (const double x : c) robust = robust && x >= 0 && x <= 1;
+    const double naive = textbook_texels(n.du_dx * size, n.dv_dx * size, n.du_dy * size, n.dv_dy * size);
+    t.tally(!(naive >= 1 && naive <= 50 * most), !robust, {n.du_dx, n.dv_dx, n.du_dy, n.dv_dy});
+  }
+}
+
 }  // namespace
 
 std::vector<HardCase> texture() {
@@ -292,6 +427,13 @@ std::vector<HardCase> texture() {
       {"TEX-08", "rows of 16384 px over 4096 texels", "u / w and 1 / w stepped in float",
        "kernels::simd::interpolate_attributes", "rationals", "within 1/256 texel at every pixel", "texels",
        1.0 / 256, long_scanline},
+      {"TEX-09", "corners (0,0), (1,0), (2, 2^-8 to 2^-40), (0,1), also at 1e5",
+       "eight equations, eliminated with pivots", "kernels::QuadMap", "rationals",
+       "within 8 u of the coordinates", "u", 8, nearly_collinear_corners},
+      {"TEX-11", "footprints of 1 : 1e6 and of no area, 2^-6 to 2^4 textures long",
+       "the ellipse of the derivatives", "kernels::elliptical", "counting",
+       "a colour of the texels from at most 50 max_anisotropy of them", "footprints without a colour", 0,
+       needles},
       {"TEX-12", "a texture of 64 x 64 on as many pixels, in four quarter turns", "u = x / (N - 1)",
        "fill, interpolate and look-up kernels", "comparison of bits",
        "the texels themselves, nearest and bilinear", "changed pixels", 0, one_texel_a_pixel},

@@ -1,5 +1,5 @@
-// Every effect of a picture, end to end: where the scene does not call for it, forcing it changes no bit; where it
-// does, leaving it out changes bits; and a predicate that lies about that is caught by the proof.
+// Every effect of a picture, end to end: where the scene does not call for it, forcing it changes no bit;
+// where it does, leaving it out changes bits; and a predicate that lies about that is caught by the proof.
 #include "runtime/app/effects/plan_effects.h"
 #include "runtime/app/effects/prove.h"
 #include "tests/support/broken_effect.h"
@@ -18,8 +18,8 @@ namespace {
 
 using testing::HasSubstr;
 
-// A ball in view of a perspective camera, with lights, a material and a texture that call for as little as possible.
-// Every part can be replaced by another.
+// A ball in view of a perspective camera, with lights, a material and a texture that call for as little as
+// possible. Every part can be replaced by another.
 using Parts = std::map<std::string, std::string>;
 
 Parts plain() {
@@ -87,6 +87,7 @@ struct Case {
 const char* const box = R"({ "type": "mesh.box" })";
 const char* const floor_around =
     R"({ "type": "mesh.grid", "params": { "size": [60, 60], "segments": [3, 3] } })";
+const char* const sheet = R"({ "type": "mesh.grid", "params": { "size": [2, 2] } })";
 const char* const sky = R"({ "type": "light.ambient", "params": { "color": [0.3, 0.4, 0.5] } })";
 const char* const lamp =
     R"({ "type": "light.point", "params": { "position": [2, 3, 1], "color": [4, 4, 4] } })";
@@ -145,6 +146,15 @@ std::vector<Case> cases() {
       {"texture_lookup", {{"texture", "constant"}}, {{"texture", "varied"}, {"filter", R"("nearest")"}}},
       {"texture_lookup", {{"texture", "white"}, {"filter", R"("bilinear")"}}, {{"texture", "almost"}}},
       {"mip_levels", {{"texture", "varied"}, {"pyramid", "false"}}, {{"texture", "varied"}}},
+      {"mip_levels",
+       {{"mesh", sheet}, {"eye", "[0, 3, 1]"}, {"texture", "almost"}},
+       {{"mesh", sheet}, {"eye", "[0, 3, 1]"}, {"texture", "varied"}}},
+      {"mip_levels",
+       {{"mesh", sheet}, {"eye", "[0, 3, 1]"}, {"texture", "almost"}, {"filter", R"("ewa")"}},
+       {{"mesh", box}, {"texture", "varied"}, {"filter", R"("ewa")"}}},
+      {"mip_levels",
+       {{"mesh", sheet}, {"eye", "[0, 3, 1]"}, {"texture", "almost"}, {"filter", R"("mitchell")"}},
+       {{"mesh", floor_around}, {"eye", "[0, 1, 3]"}, {"texture", "varied"}, {"filter", R"("mitchell")"}}},
       {"reconstruction", {{"samples", "1"}, {"resolve", R"({ "filter": "box" })"}}, {}},
       {"color_conversion", {}, {{"space", R"("srgb")"}}},
   };

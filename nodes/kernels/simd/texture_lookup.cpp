@@ -17,12 +17,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-void look_up_pyramid(const TexelPyramid& p, Lookup filter, const UvRows<float>& in, std::size_t n,
+void look_up_pyramid(const TexelPyramid& p, const Filtering& filter, const UvRows<float>& in, std::size_t n,
                      const RgbaRows<float>& out) {
   kernels::look_up(p, filter, in, n, out);
 }
-void look_up_checker(const CheckerColors<float>& c, Lookup filter, const UvRows<float>& in, std::size_t n,
-                     const RgbaRows<float>& out) {
+void look_up_checker(const CheckerColors<float>& c, const Filtering& filter, const UvRows<float>& in,
+                     std::size_t n, const RgbaRows<float>& out) {
   kernels::look_up(c, filter, in, n, out);
 }
 
@@ -49,8 +49,8 @@ RgbaRows<float> advanced(const RgbaRows<float>& r, std::size_t x) {
 // Calls body(in, out) for each whole vector of points. The last, partial one is left to the scalar twin of
 // `source`.
 template <class Source, class Body>
-HWY_INLINE void for_each_vector(const Source& source, Lookup filter, const UvRows<float>& in, std::size_t n,
-                                const RgbaRows<float>& out, Body&& body) {
+HWY_INLINE void for_each_vector(const Source& source, const Filtering& filter, const UvRows<float>& in,
+                                std::size_t n, const RgbaRows<float>& out, Body&& body) {
   const std::size_t lanes = hn::Lanes(D());
   std::size_t x = 0;
   for (; x + lanes <= n; x += lanes) body(advanced(in, x), advanced(out, x));
@@ -93,8 +93,8 @@ HWY_INLINE V square_wave_mean(V x, V half) {
   return hn::IfThenElse(hn::Eq(a, b), square_wave(x), filtered);
 }
 
-void look_up_checker(const CheckerColors<float>& c, Lookup filter, const UvRows<float>& in, std::size_t n,
-                     const RgbaRows<float>& out) {
+void look_up_checker(const CheckerColors<float>& c, const Filtering& filter, const UvRows<float>& in,
+                     std::size_t n, const RgbaRows<float>& out) {
   const D d;
   const V scale = hn::Set(d, c.scale), half_scale = hn::Set(d, 0.5F * c.scale), half = hn::Set(d, 0.5F);
   for_each_vector(c, filter, in, n, out, [&](const UvRows<float>& p, const RgbaRows<float>& rgba) HWY_ATTR {
@@ -105,7 +105,7 @@ void look_up_checker(const CheckerColors<float>& c, Lookup filter, const UvRows<
     }
     const V u = hn::Mul(hn::LoadU(d, p.u), scale), v = hn::Mul(hn::LoadU(d, p.v), scale);
     V mean_u, mean_v;
-    if (filter == Lookup::nearest) {
+    if (filter.kind == Lookup::nearest) {
       mean_u = square_wave(u), mean_v = square_wave(v);
     } else {
       const V width_u = hn::Add(hn::Abs(hn::LoadU(d, p.du_dx)), hn::Abs(hn::LoadU(d, p.du_dy)));
@@ -269,9 +269,32 @@ struct LevelTable {
   }
 };
 
-void look_up_pyramid(const TexelPyramid& p, Lookup filter, const UvRows<float>& in, std::size_t n,
+// ColorSum<float> in one vector.
+struct VectorSum {
+  explicit VectorSum(const Rgba<float>& from) : base(hn::LoadU(D4(), from.data())), sum(hn::Zero(D4())) {}
+  void add(const float* texel, float w) {
+    sum = hn::Add(sum, hn::Mul(hn::Set(D4(), w), hn::Sub(hn::LoadU(D4(), texel), base)));
+  }
+  Rgba<float> mean(float weights) const {
+    Rgba<float> c;
+    hn::StoreU(hn::Add(base, hn::Div(sum, hn::Set(D4(), weights))), D4(), c.data());
+    return c;
+  }
+  hn::Vec<D4> base, sum;
+};
+
+void look_up_ellipses(const TexelPyramid& p, const Filtering& filter, const UvRows<float>& in, std::size_t n,
+                      const RgbaRows<float>& out) {
+  for (std::size_t x = 0; x < n; ++x)
+    out.put(x, in.covers(x) ? elliptical<VectorSum>(p, in, x, static_cast<float>(filter.max_anisotropy))
+                            : Rgba<float>{});
+}
+
+void look_up_pyramid(const TexelPyramid& p, const Filtering& filter, const UvRows<float>& in, std::size_t n,
                      const RgbaRows<float>& out) {
-  if (filter == Lookup::nearest) return kernels::look_up(p, filter, in, n, out);
+  if (filter.kind == Lookup::ewa) return look_up_ellipses(p, filter, in, n, out);
+  if ((filter.kind != Lookup::bilinear && filter.kind != Lookup::trilinear) || p.has_border())
+    return kernels::look_up(p, filter, in, n, out);
   const D d;
   const Di di;
   const int last = static_cast<int>(p.levels.size()) - 1;
@@ -286,7 +309,7 @@ void look_up_pyramid(const TexelPyramid& p, Lookup filter, const UvRows<float>& 
     const V s = fold(hn::LoadU(d, row.u), p.wrap_u);
     const V t = hn::Sub(hn::Set(d, 1.0F), fold(hn::LoadU(d, row.v), p.wrap_v));
     V level = hn::Zero(d);
-    if (filter == Lookup::trilinear) level = pyramid_level(row, p.levels[0], last);
+    if (filter.kind == Lookup::trilinear) level = pyramid_level(row, p.levels[0], last);
     const Vi fine = hn::ConvertTo(di, level);
     const V fraction = hn::Sub(level, hn::ConvertTo(d, fine));
     const bool blends = !hn::AllFalse(d, hn::Gt(fraction, hn::Zero(d)));
@@ -321,12 +344,12 @@ namespace frustum::kernels::simd {
 HWY_EXPORT(look_up_pyramid);
 HWY_EXPORT(look_up_checker);
 
-void look_up(const TexelPyramid& pyramid, Lookup filter, const UvRows<float>& in, std::size_t n,
+void look_up(const TexelPyramid& pyramid, const Filtering& filter, const UvRows<float>& in, std::size_t n,
              const RgbaRows<float>& out) {
   HWY_DYNAMIC_DISPATCH(look_up_pyramid)(pyramid, filter, in, n, out);
 }
-void look_up(const CheckerColors<float>& checker, Lookup filter, const UvRows<float>& in, std::size_t n,
-             const RgbaRows<float>& out) {
+void look_up(const CheckerColors<float>& checker, const Filtering& filter, const UvRows<float>& in,
+             std::size_t n, const RgbaRows<float>& out) {
   HWY_DYNAMIC_DISPATCH(look_up_checker)(checker, filter, in, n, out);
 }
 

@@ -1,4 +1,5 @@
-// clip.line against Cohen and Sutherland's clipper in rational arithmetic, which goes another way: it moves ends.
+// clip.line against Cohen and Sutherland's clipper in rational arithmetic, which goes another way: it moves
+// ends.
 #include "nodes/clip/line.h"
 
 #include "nodes/clip.h"
@@ -37,7 +38,8 @@ struct ExactPart {
   Rational from, to;
 };
 
-// Ends outside a plane are moved onto it, plane after plane, until the outcodes of both are empty or share a bit.
+// Ends outside a plane are moved onto it, plane after plane, until the outcodes of both are empty or share a
+// bit.
 std::optional<ExactPart> cohen_sutherland(const glm::dvec4& p, const glm::dvec4& q,
                                           std::span<const glm::dvec4> planes) {
   const Exact4 a = exact(p), b = exact(q);

@@ -91,9 +91,11 @@ TEST(RasterizeAttributes, HasOnlyThePlanesOfTheMesh) {
   const Raster all = points(quad<double>(), "affine", Precision::real_double);
   std::vector<std::string> names;
   for (const Plane& p : all.frame().planes) names.push_back(p.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"id", "uv.u", "uv.v", "uv.du_dx", "uv.dv_dx", "uv.du_dy",
-                                             "uv.dv_dy", "N.x", "N.y", "N.z", "P.x", "P.y", "P.z", "heat",
-                                             "lobe.x", "lobe.y", "w"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"id",       "uv.u",    "uv.v",    "uv.du_dx", "uv.dv_dx", "uv.du_dy",
+                                      "uv.dv_dy", "N.x",     "N.y",     "N.z",      "P.x",      "P.y",
+                                      "P.z",      "P.dx_dx", "P.dy_dx", "P.dz_dx",  "P.dx_dy",  "P.dy_dy",
+                                      "P.dz_dy",  "heat",    "lobe.x",  "lobe.y",   "w"}));
 }
 
 TEST(RasterizeAttributes, HitsOfAnotherMeshAreRefused) {

@@ -85,10 +85,10 @@ void expect_twins(const Source& source, const Points& p, kernels::Lookup filter)
 
 TEST(TextureLookup, EveryTargetHasTheBitsOfTheScalarTwin) {
   const Points p = hostile_points();
-  for (const auto filter :
-       {kernels::Lookup::nearest, kernels::Lookup::bilinear, kernels::Lookup::trilinear}) {
+  for (const auto filter : {kernels::Lookup::nearest, kernels::Lookup::bilinear, kernels::Lookup::trilinear,
+                            kernels::Lookup::mitchell, kernels::Lookup::ewa}) {
     expect_twins(kernels::CheckerColors<float>{12, {0.7F, 0.3F, 0.2F}, {0.1F, 0, 0.9F}}, p, filter);
-    for (const Wrap u : {Wrap::repeat, Wrap::clamp, Wrap::mirror})
+    for (const Wrap u : {Wrap::repeat, Wrap::clamp, Wrap::mirror, Wrap::border})
       for (const Wrap v : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
         const MipPyramid pyramid = random_pyramid(37, 16, u, v);
         const auto levels = levels_of(pyramid);
@@ -167,7 +167,8 @@ TEST(TextureSample, KeepsTheLawOfTiles) {
   for (const auto& t : {texture(random_pyramid(32, 20, Wrap::repeat, Wrap::mirror)),
                         std::make_shared<const Texture>(Texture{Checker{12, {1, 1, 1}, {0, 0.5, 0}}})})
     for (const char* filter :
-         {R"({"filter": "nearest"})", R"({"filter": "bilinear"})", R"({"filter": "trilinear"})"})
+         {R"({"filter": "nearest"})", R"({"filter": "bilinear"})", R"({"filter": "trilinear"})",
+          R"({"filter": "catmull_rom"})", R"({"filter": "ewa"})"})
       EXPECT_EQ(test::break_of_tile_law(
                     {nodes::texture_sample(), filter, {{"points", {points}}, {"texture", {t}}}}),
                 "");
