@@ -101,7 +101,8 @@ NodeType nodes::shade_shadow() {
              "All that casts shadows, before anything of it is culled or clipped away.",
              {.space = {Space::object, Space::world}})
       .input("lights", &Inputs::lights, "The lights, in the order in which shade.surface gets them.")
-      .effect(shadows_name, shadows, "No light is hidden from any point.", {"sample and light", 400})
+      .effect(shadows_name, shadows, "Every light is looked for from every point, past all that may hide it.",
+              {"sample and light", 150})
       .output(
           "visibility", &Outputs::visibility,
           "V0, V1 ..: 1 where a source of light is seen, 0 where something hides it; none where all see it.");

@@ -176,7 +176,8 @@ NodeType nodes::shade_shadow_map() {
              "Texels around a point that count; raising it softens edges over a band of twice that.",
              {.unit = "texels", .range = between(0, 16)})
       .knob_of_taste({"0", "1", "2", "4"}, "Edges are blurred to hide texels, not as a lamp's size would.")
-      .effect(shadows_name, shadows, "No light is hidden from any point.", {"sample and light", 120})
+      .effect(shadows_name, shadows, "Depths around every point are compared with those that each light saw.",
+              {"sample and light", 40})
       .output("visibility", &Outputs::visibility,
               "V0, V1 ..: the share of each source of light that reaches a point.");
 }
