@@ -6,7 +6,7 @@ namespace {
 std::vector<HardCase> all_cases() {
   std::vector<HardCase> all;
   for (const auto stage : {foundations, transforms, quaternions, projection, clipping, culling, lines,
-                           triangles, depth, shading, texture, sampling, colour, runtime}) {
+                           triangles, depth, shading, shadows, texture, sampling, colour, runtime}) {
     const auto more = stage();
     all.insert(all.end(), more.begin(), more.end());
   }
