@@ -294,6 +294,27 @@ TEST_F(ProvenEffects, APlanRunsNoPixelsAndSaysWhatItWouldSave) {
   EXPECT_THAT(text, HasSubstr("nobody reads"));
 }
 
+// Samples that show nothing cost nothing: an estimate counts the share of the picture that faces may cover.
+TEST_F(ProvenEffects, AnEstimateCountsWhatFacesMayCover) {
+  const auto share = [&](const char* eye) {
+    const Graph g = load(session_, {{"eye", eye}}, Precision::single);
+    for (const PlannedEffect& e : plan_effects(session_, g, demand(g)).effects)
+      if (e.effect == "highlights") {
+        EXPECT_EQ(e.item, "point");
+        EXPECT_NEAR(static_cast<double>(e.estimate.count()),
+                    static_cast<double>(e.verdict->items) * e.share *
+                        find_effect(*session_.registry().find("shade.surface"), "highlights")->cost.ns,
+                    1);
+        return e.share;
+      }
+    return -1.0;
+  };
+  const double near = share("[0, 0, 1.3]"), middle = share("[0, 0, 6]"), far = share("[0, 0, 60]");
+  EXPECT_EQ(near, 1) << "the ball fills the picture";
+  EXPECT_LT(middle, 0.5);
+  EXPECT_NEAR(far / middle, 0.01, 0.002) << "an area falls with the square of the distance";
+}
+
 TEST(EffectPolicy, UnknownNamesGetSuggestions) {
   const Session session;
   Diagnostics problems;

@@ -119,6 +119,36 @@ TEST_F(SuiteCheckTest, InvariantsOfNumbers) {
   holds(image(R"({"port": "out", "invariant": {"name": "energy", "of": "made"}})"));
 }
 
+// Every law about meshes and matrices with a buffer that breaks it; those above have theirs beside them.
+TEST_F(SuiteCheckTest, InvariantsThatAreBroken) {
+  const auto law = [](const std::string& name) {
+    return R"({"port": "out", "invariant": ")" + name + R"("})";
+  };
+  folder_.graph("flipped.json", "test.mesh", R"({"flipped": true})");
+  folder_.graph("doubled.json", "test.mesh", R"({"doubled": true})");
+  folder_.graph("unit.json", "test.mesh", R"({"normal": 1})");
+  folder_.graph("long.json", "test.mesh", R"({"normal": 1.5})");
+  folder_.graph("rigid.json", "test.matrix");
+  folder_.graph("scaled.json", "test.matrix", R"({"scale": 2})");
+  breaks(of("flipped", law("winding")), "are run in the same direction by two faces");
+  breaks(of("doubled", law("manifold")), "more than two faces");
+  holds(of("unit", law("unit_normals")));
+  breaks(of("long", law("unit_normals")), "normal 0 has length 1.5");
+  holds(of("rigid", law("orthonormal")));
+  EXPECT_EQ(of("scaled", law("orthonormal")).verdict, CaseVerdict::fail);
+  folder_.files().write("suites/two.json", R"({"format": "frustum.graph/1", "nodes": {
+      "small": {"type": "test.mesh"}, "large": {"type": "test.mesh", "params": {"scale": 2}},
+      "dark": {"type": "test.image"}, "bright": {"type": "test.image", "params": {"add": 1}}}})");
+  const auto two = [&](const std::string& port, const std::string& name, const std::string& other) {
+    return of("two", R"({"port": ")" + port + R"(", "invariant": {"name": ")" + name + R"(", "of": ")" +
+                         other + R"("}})");
+  };
+  holds(two("small.mesh", "within_bounds", "large.mesh"));
+  breaks(two("large.mesh", "within_bounds", "small.mesh"), "along x it reaches from 0 to 2, beyond 0 to 1");
+  holds(two("dark.image", "energy", "dark.image"));
+  breaks(two("bright.image", "energy", "dark.image"), "of the other");
+}
+
 TEST_F(SuiteCheckTest, SameAsAnotherPortOrRun) {
   holds(image(R"({"port": "out", "same_as": "made.image"})"));
   holds(image(R"({"port": "out", "same_as": {"graph": "image.json"}})"));
@@ -197,6 +227,50 @@ TEST_F(SuiteCheckTest, BudgetsOfBytesAndCounters) {
   const CaseResult slow = of("image", none, R"(, "budget": {"time": 1e-9})");
   holds(slow);
   EXPECT_THAT(slow.notes, ElementsAre(HasSubstr("above the 1e-09 s")));
+}
+
+// ----- every bound holds and breaks
+
+struct Bound {
+  const char *holds, *breaks;
+};
+class EveryMetric : public testing::TestWithParam<Bound> {};
+
+// Against a picture that is brighter by a twentieth.
+TEST_P(EveryMetric, HoldsAboveTheDifferenceAndBreaksBelowIt) {
+  test::SuiteFolder folder;
+  const auto with = [&](const std::string& bound) {
+    return folder.check(
+        "{}", R"({"port": "out", "same_as": {"set": {"made:add": 0.05}}, "why": "a test", )" + bound + "}");
+  };
+  holds(with(GetParam().holds));
+  const CaseResult broken = with(GetParam().breaks);
+  EXPECT_EQ(broken.verdict, CaseVerdict::fail);
+  EXPECT_EQ(broken.failures.size(), 1u)
+      << "the bound and nothing else: " << testing::PrintToString(broken.failures);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    SuiteCheck, EveryMetric,
+    testing::Values(Bound{R"("abs": 0.051)", R"("abs": 0.049)"}, Bound{R"("rel": 1)", R"("rel": 0.1)"},
+                    Bound{R"("ulp": 2e9)", R"("ulp": 100)"}, Bound{R"("max": 0.051)", R"("max": 0.049)"},
+                    Bound{R"("percentile": {"p": 50, "at_most": 0.051})",
+                          R"("percentile": {"p": 50, "at_most": 0.049})"},
+                    Bound{R"("rmse": 0.051)", R"("rmse": 0.049)"}, Bound{R"("mrse": 100)", R"("mrse": 1e-4)"},
+                    Bound{R"("psnr": 25.9)", R"("psnr": 26.1)"}, Bound{R"("ssim": 0.1)", R"("ssim": 0.9999)"},
+                    Bound{R"("flip": 0.9)", R"("flip": 1e-3)"},
+                    Bound{R"("delta_e_2000": 50)", R"("delta_e_2000": 0.1)"},
+                    Bound{R"("delta_e_2000_max": 90)", R"("delta_e_2000_max": 0.1)"}));
+
+TEST_F(SuiteCheckTest, WrongIdsAreCounted) {
+  const auto ids = [&](const char* bound) {
+    return folder_.check(R"({"planes": "RI"})", R"({"port": "out", "same_as": {"set": {"made:shift": [1, 0]}},
+        "max": 1, "why": "a test", "wrong_ids": )" + std::string(bound) +
+                                                    "}");
+  };
+  EXPECT_EQ(ids("32").verdict,
+            ids("0").verdict == CaseVerdict::fail ? CaseVerdict::pass : CaseVerdict::crash);
+  EXPECT_EQ(ids("0").verdict, CaseVerdict::fail);
 }
 
 // ----- NaN passes nothing

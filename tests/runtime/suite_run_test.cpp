@@ -201,6 +201,29 @@ TEST(SuiteRun, ReadsOnlyWhatIsChosen) {
   EXPECT_TRUE(folder.run(cases, options).empty());
 }
 
+// The parts of a suite that several machines run: all of it, and nothing twice.
+TEST(SuiteRun, ShardsAreTheWholeAndDisjoint) {
+  const test::SuiteFolder folder;
+  const std::string cases =
+      R"({"id": "b", "graph": "image.json", "matrix": {"made:add": [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]}},
+      {"id": "m", "graph": "mesh.json", "matrix": {"made:scale": [1, 2, 3, 4]}})";
+  const auto ids = [&](std::optional<Shard> shard) {
+    SuiteOptions options;
+    options.isolate = false, options.shard = shard.value_or(Shard{});
+    std::vector<std::string> out;
+    for (const CaseResult& r : folder.run(cases, options)) out.push_back(r.id);
+    return out;
+  };
+  const auto whole = ids(std::nullopt);
+  ASSERT_THAT(whole, SizeIs(14));
+  for (const int count : {1, 2, 3, 20}) {
+    std::vector<std::string> together;
+    for (int i = 1; i <= count; ++i)
+      for (std::string& id : ids(Shard{i, count})) together.push_back(std::move(id));
+    EXPECT_THAT(together, testing::UnorderedElementsAreArray(whole)) << count;
+  }
+}
+
 // ----- reports
 
 TEST(SuiteReport, IsTheSameAfterItLeftItsProcess) {

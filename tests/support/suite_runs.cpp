@@ -66,8 +66,8 @@ ImageOut copy_image(const CopyIn& in, const NoParams&, Context&) { return {in.im
 
 // ----- test.mesh
 struct MeshParams {
-  bool open = false, inside_out = false;
-  double scale = 1;
+  bool open = false, inside_out = false, flipped = false, doubled = false;
+  double normal = 0, scale = 1;
 };
 struct MeshOut {
   Ref<Mesh> mesh;
@@ -80,11 +80,31 @@ MeshOut make_mesh(const None&, const MeshParams& p, Context&) {
   if (p.open) faces.pop_back();
   if (p.inside_out)
     for (auto& f : faces) std::swap(f.y, f.z);
+  if (p.flipped) std::swap(faces[0].y, faces[0].z);
+  if (p.doubled) faces.push_back(faces[0]);
   auto mesh = std::make_shared<Mesh>();
   mesh->columns = {Column::make<glm::uvec3>("triangle", Domain::face, std::span<const glm::uvec3>(faces)),
                    Column::make<glm::vec3>("position", Domain::vertex, std::span<const glm::vec3>(corners),
                                            Space::object)};
+  if (p.normal != 0) {
+    const std::vector<glm::vec3> normals(4, glm::vec3(0, static_cast<float>(p.normal), 0));
+    mesh->columns.push_back(
+        Column::make<glm::vec3>("normal", Domain::vertex, std::span<const glm::vec3>(normals)));
+  }
   return {mesh};
+}
+
+// ----- test.matrix
+struct MatrixParams {
+  double scale = 1;
+};
+struct MatrixOut {
+  Ref<Matrix> matrix;
+};
+MatrixOut make_matrix(const None&, const MatrixParams& p, Context&) {
+  Matrix m;
+  m.value[0] *= p.scale;
+  return {std::make_shared<const Matrix>(m)};
 }
 
 // ----- test.table
@@ -141,8 +161,14 @@ Registry suite_nodes() {
   types.push_back(node("test.mesh", make_mesh)
                       .param("open", &MeshParams::open, "")
                       .param("inside_out", &MeshParams::inside_out, "")
+                      .param("flipped", &MeshParams::flipped, "")
+                      .param("doubled", &MeshParams::doubled, "")
+                      .param("normal", &MeshParams::normal, "")
                       .param("scale", &MeshParams::scale, "")
                       .output("mesh", &MeshOut::mesh, ""));
+  types.push_back(node("test.matrix", make_matrix)
+                      .param("scale", &MatrixParams::scale, "")
+                      .output("matrix", &MatrixOut::matrix, ""));
   types.push_back(node("test.table", make_table)
                       .param("rows", &TableParams::rows, "")
                       .output("table", &TableOut::table, ""));

@@ -13,7 +13,9 @@ namespace frustum::test {
 //   test.image  size, planes ("RGB"), add, times, shift, nan: plane p at x,y is
 //               (x + 2 y) / 64 + p / 8, moved, scaled and added to; plane "I" is the id x + 2 y
 //   test.copy   its image
-//   test.mesh   a tetrahedron that looks outward; open, inside_out, scale
+//   test.mesh   a tetrahedron that looks outward; open, inside_out, flipped (one face), doubled (one face twice), normal
+//               (the length of normals; 0: none), scale
+//   test.matrix the identity, its first column times `scale`
 //   test.table  columns "n" 0 1 2 ... and "square", of `rows`
 //   test.act    image of one pixel, after it did `what`: "nothing", "crash", "exit", "hang", "throw", "say",
 //               or "flaky": throws unless `file` exists, and makes it

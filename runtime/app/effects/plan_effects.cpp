@@ -1,5 +1,6 @@
 #include "runtime/app/effects/plan_effects.h"
 
+#include "runtime/app/effects/covered.h"
 #include "runtime/core/param.h"
 #include "runtime/core/text.h"
 #include "runtime/graph/run_effects.h"
@@ -34,7 +35,13 @@ const std::vector<EffectDoc>& effects_of_runs() {
   return all;
 }
 
-PlannedEffect planned(const std::string& node, const EffectDoc& doc, std::optional<Verdict> verdict) {
+// Where nothing is seen, samples are passed over; pixels, faces and vertices are all gone through.
+bool may_show_nothing(std::string_view item) {
+  return item == "sample" || item == "point" || item == "number";
+}
+
+PlannedEffect planned(const std::string& node, const EffectDoc& doc, std::optional<Verdict> verdict,
+                      double share = 1) {
   PlannedEffect e{.node = node,
                   .effect = doc.name,
                   .doc = doc.doc,
@@ -42,7 +49,9 @@ PlannedEffect planned(const std::string& node, const EffectDoc& doc, std::option
                   .verdict = std::move(verdict)};
   if (e.verdict && e.verdict->items != 0 && !doc.cost.item.empty()) {
     e.item = doc.cost.item;
-    e.estimate = std::chrono::nanoseconds(std::llround(static_cast<double>(e.verdict->items) * doc.cost.ns));
+    if (may_show_nothing(e.item)) e.share = share;
+    e.estimate =
+        std::chrono::nanoseconds(std::llround(static_cast<double>(e.verdict->items) * e.share * doc.cost.ns));
   }
   return e;
 }
@@ -54,12 +63,12 @@ const EffectDoc& declared(const NodeType& type, std::string_view effect) {
 }
 
 // The effects of one node that runs: those decided, then those that wait for pixels.
-void add_node(const GraphNode& node, const RunResult& facts, std::vector<PlannedEffect>& out) {
+void add_node(const GraphNode& node, const RunResult& facts, double share, std::vector<PlannedEffect>& out) {
   std::set<std::string, std::less<>> decided;
   for (const NodeVerdict& v : facts.verdicts) {
     if (v.node != node.id) continue;
     decided.insert(v.effect);
-    out.push_back(planned(node.id, declared(*node.type, v.effect), v.verdict));
+    out.push_back(planned(node.id, declared(*node.type, v.effect), v.verdict, share));
   }
   for (const EffectDoc& doc : node.type->effects)
     if (!decided.contains(doc.name)) out.push_back(planned(node.id, doc, std::nullopt));
@@ -72,7 +81,9 @@ std::string amount(std::uint64_t n, std::string_view item) {
 std::vector<std::string> row(const PlannedEffect& e) {
   std::string why = e.verdict ? e.verdict->why : "the pixels that it depends on do not exist before the run";
   if (e.estimate.count() > 0)
-    why += fmt::format(" (about {}: {})", human_time(e.estimate), amount(e.verdict->items, e.item));
+    why += fmt::format(" (about {}: {}{})", human_time(e.estimate),
+                       e.share < 1 ? fmt::format("{:.0f} % of ", 100 * e.share) : "",
+                       amount(e.verdict->items, e.item));
   return {std::string(name_of_verdict(e.verdict)), e.effect, e.node, why};
 }
 
@@ -103,9 +114,15 @@ EffectPlan plan_effects(Session& session, const Graph& graph, const Demand& dema
   RunOptions options = base;
   options.demand = demand;
   options.only_facts = true;
-  EffectPlan made{.effects = {}, .facts = session.run(graph, options, false)};
   const Plan plan = make_plan(graph, demand, {.fuse = options.fuse});
-  for (const PlannedNode& n : plan.nodes) add_node(graph.nodes[n.node], made.facts, made.effects);
+  std::set<std::size_t> runs;
+  for (const PlannedNode& n : plan.nodes) runs.insert(n.node);
+  for (const PortRef mesh : screen_meshes(graph))
+    if (runs.contains(mesh.node)) options.demand.ports.push_back(mesh);
+  EffectPlan made{.effects = {}, .facts = session.run(graph, options, false)};
+  const std::vector<double> shares = covered_shares(graph, made.facts);
+  for (const PlannedNode& n : plan.nodes)
+    add_node(graph.nodes[n.node], made.facts, shares[n.node], made.effects);
   for (const std::size_t n : plan.skipped)
     made.effects.push_back(planned(graph.nodes[n].id, effects_of_runs().back(),
                                    off_exact("no path leads from it to anything that is asked for")));
@@ -158,6 +175,7 @@ Json to_json(const std::vector<PlannedEffect>& effects) {
     if (e.verdict) j["why"] = e.verdict->why;
     if (e.verdict && e.verdict->items != 0) j["items"] = e.verdict->items;
     if (!e.item.empty()) j["item"] = e.item;
+    if (e.share < 1) j["share"] = e.share;
     if (e.estimate.count() > 0)
       j["estimate_ms"] = std::chrono::duration<double, std::milli>(e.estimate).count();
     j["shortcut"] = e.shortcut;

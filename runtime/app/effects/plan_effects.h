@@ -21,7 +21,8 @@ struct PlannedEffect {
   bool shortcut = false;                 // EffectDoc
   std::optional<Verdict> verdict;        // none: decided once the pixels that it depends on exist
   std::string item = {};                 // what verdict->items counts; empty: not measured
-  std::chrono::nanoseconds estimate{0};  // verdict->items times what one took in one thread; 0: not known
+  double share = 1;                      // how many of them show something, at most (covered.h)
+  std::chrono::nanoseconds estimate{0};  // items times share times what one took in one thread; 0: not known
 };
 
 struct EffectPlan {
