@@ -333,8 +333,8 @@ class Filler {
 
   const R* alpha_row(std::size_t sample) const { return row_[alpha_ * samples_ + sample]; }
 
-  void straighten(const R* alpha, PointRow<R>& row) const {
-    if (s_.alpha && !s_.straight_albedo) straighten_row(row.id, alpha, n_, straight_, row.albedo);
+  void straighten(const R* alpha, PointRow<R>& row, std::size_t n) const {
+    if (s_.alpha && !s_.straight_albedo) straighten_row(row.id, alpha, n, straight_, row.albedo);
   }
   void cover(std::size_t sample, int y) const {
     if (s_.alpha) cover_row(id_[sample], alpha_row(sample), n_, out_rows(sample, y));
@@ -350,14 +350,14 @@ class Filler {
     };
     if (s_.reach.empty()) return find(faces_[0], out);
     for (R* to : out)
-      if (to != nullptr) std::fill_n(to, n_, R(0));
+      if (to != nullptr) std::fill(to + run.first, to + run.second, R(0));
     std::array<R*, 6> part{};
     std::copy_n(part_.begin(), lit_numbers_, part.begin());
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       find(faces_[i], part);
       const R* reach = real_row<R>(visibility_, s_.reach[i], k, y, std::span(part_[6], n_));
       for (std::size_t c = 0; c < lit_numbers_; ++c)
-        for (std::size_t x = 0; x < n_; ++x)
+        for (std::size_t x = run.first; x < run.second; ++x)
           out[c][x] = out[c][x] + (reach == nullptr ? part[c][x] : part[c][x] * reach[x]);
     }
   }
@@ -383,11 +383,12 @@ class Filler {
         const auto number = [&](std::size_t i) { return row_[i * samples_ + k] + begin; };
         const kernels::ColorRows<R> out = out_rows(k, y, begin);
         PointRow<R> points = point_row<R>(s_, id_[k] + begin, number, reach_);
-        straighten(s_.alpha ? alpha_row(k) : nullptr, points);
+        const R* alpha = s_.alpha ? alpha_row(k) + begin : nullptr;
+        straighten(alpha, points, end - begin);
         shade_row(shader_.scene, points, end - begin, scratch_, out);
         fade_row(shader_.scene, id_[k] + begin, end - begin, out);
+        if (s_.alpha) cover_row(id_[k] + begin, alpha, end - begin, out);
       }
-      cover(k, y);
     }
   }
 
@@ -408,7 +409,7 @@ class Filler {
     while (take_face_row<R>(left_.data(), samples_, n_, row_, face_.data(), mean_)) {
       PointRow<R> means = point_row<R>(
           s_, face_.data(), [&](std::size_t i) { return mean_[i]; }, reach_);
-      straighten(s_.alpha ? mean_[alpha_] : nullptr, means);
+      straighten(s_.alpha ? mean_[alpha_] : nullptr, means, n_);
       shade_row(shader_.scene, means, n_, scratch_, color_);
       fade_row(shader_.scene, face_.data(), n_, color_);
       for (std::size_t k = 0; k < samples_; ++k)
