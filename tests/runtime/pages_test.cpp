@@ -59,7 +59,9 @@ TEST_F(KeptPages, NoMoreIsKeptThanAllowedAndTheOldestGoFirst) {
   {
     Pages a(4 * megabyte, Contents::anything), b(5 * megabyte, Contents::anything);
     Pages c(6 * megabyte, Contents::anything);
-    a = Pages(), b = Pages(), c = Pages();
+    a = Pages();
+    b = Pages();
+    c = Pages();
   }
   EXPECT_EQ(idle_page_bytes(), 6 * megabyte);
   keep_idle_pages(0);
