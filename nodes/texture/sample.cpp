@@ -4,6 +4,7 @@
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/minification.h"
 #include "runtime/buffers/real_rows.h"
+#include "runtime/buffers/texels.h"
 #include "runtime/buffers/texture_facts.h"
 #include "runtime/core/node_type.h"
 
@@ -57,20 +58,6 @@ static_assert(static_cast<int>(Wrap::repeat) == static_cast<int>(kernels::EdgeRu
 constexpr kernels::EdgeRule edge_rule(Wrap w) { return static_cast<kernels::EdgeRule>(w); }
 
 // ----- preparation
-
-std::vector<kernels::TexelLevel> texel_levels(const Texture& texture) {
-  std::vector<kernels::TexelLevel> levels;
-  const auto* pyramid = std::get_if<MipPyramid>(&texture.source);
-  if (pyramid == nullptr) return levels;
-  if (pyramid->levels.empty() || pyramid->levels.size() > 32)
-    throw NodeError("empty_texture", "the texture has no level or too many", at_input("texture"));
-  for (const MipPyramid::Level& l : pyramid->levels) {
-    if (l.width < 1 || l.height < 1)
-      throw NodeError("empty_texture", "the texture has no texels", at_input("texture"));
-    levels.push_back({l.width, l.height, l.rgba.data()});
-  }
-  return levels;
-}
 
 // What was decided about the effects of the node, and what a skin is made from.
 struct Wish {
@@ -313,14 +300,6 @@ Verdict transparency(const Inputs& in, const Params&, const Context&) {
 }
 
 // ----- tiles
-
-template <class R>
-kernels::CheckerColors<R> checker_colors(const Checker& c) {
-  const auto narrow = [](const glm::dvec3& v) {
-    return std::array{static_cast<R>(v.r), static_cast<R>(v.g), static_cast<R>(v.b)};
-  };
-  return {static_cast<R>(c.scale), narrow(c.even), narrow(c.odd)};
-}
 
 template <class R>
 class Sampler {
