@@ -75,7 +75,9 @@ void add_node(const GraphNode& node, const RunResult& facts, double share, std::
 }
 
 std::string amount(std::uint64_t n, std::string_view item) {
-  return fmt::format("{} {}{}", n, item, n == 1 ? "" : item.ends_with('x') ? "es" : "s");
+  if (n != 1 && item.ends_with("ex"))
+    return fmt::format("{} {}ices", n, item.substr(0, item.size() - 2));  // vertices
+  return fmt::format("{} {}{}", n, item, n == 1 ? "" : "s");
 }
 
 std::vector<std::string> row(const PlannedEffect& e) {
