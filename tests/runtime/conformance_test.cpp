@@ -277,6 +277,18 @@ INSTANTIATE_TEST_SUITE_P(Conformance, EveryGraph,
                            return test_name(fs::path(info.param).replace_extension().string().substr(7));
                          });
 
+// The lessons too. What the libraries do is proved inside the graphs that use them.
+class EveryLesson : public EveryGraph {};
+TEST_P(EveryLesson, KeepsEveryBitWhereWhatIsOffIsForced) {
+  const Proof proof = prove_effects(session(), graph_, options_.demand, {.repeats = 0});
+  EXPECT_TRUE(proof.holds()) << proof_text(proof) << to_text(proof.problems);
+}
+
+INSTANTIATE_TEST_SUITE_P(Conformance, EveryLesson, testing::ValuesIn(graphs_in({"graphs/lessons/*/*.json"})),
+                         [](const auto& info) {
+                           return test_name(fs::path(info.param).replace_extension().string().substr(7));
+                         });
+
 TEST(Conformance, EveryExampleGraphIsInASuite) {
   std::set<std::string> covered;
   for (const fs::path& file : matching_files(root / "tests/suites/*.json")) {
