@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "nodes/kernels/parallel.h"
@@ -222,8 +224,16 @@ std::optional<Attribute<R>> wanted(const Source& s, const Tile& to) {
 
 // Copies the ids of one row, if somebody reads them, and throws where they are of another mesh.
 void check_and_copy(const std::uint32_t* from, int count, std::uint32_t faces, std::uint32_t* to) {
-  std::uint32_t greatest = 0;
-  for (int x = 0; x < count; ++x) greatest = std::max(greatest, from[x] + 1);  // no_face + 1 is 0
+  constexpr int lanes = 16;  // a fixed number, so that the compiler uses vectors
+  std::array<std::uint32_t, lanes> most{};
+  int x = 0;
+  for (; x + lanes <= count; x += lanes)
+    for (int k = 0; k < lanes; ++k) {
+      std::uint32_t& m = most[static_cast<std::size_t>(k)];
+      m = std::max(m, from[x + k] + 1);  // no_face + 1 is 0
+    }
+  for (; x < count; ++x) most[0] = std::max(most[0], from[x] + 1);
+  const std::uint32_t greatest = *std::max_element(most.begin(), most.end());
   if (greatest > faces)
     throw NodeError("wrong_mesh",
                     fmt::format("face {} is seen, but the mesh has {} faces: the hits are of another mesh",

@@ -115,12 +115,19 @@ void fade_row(const Scene<R>& s, const std::uint32_t* id, std::size_t n, const k
       if (id[x] < s.opacity.size()) plane[x] *= s.opacity[id[x]];
 }
 
-/// Whether a point of the row that shows a face is not opaque.
+/// Whether a point of the row that shows a face is not opaque. Blocks of a fixed length vectorise.
 template <std::floating_point R>
 bool any_clear(const std::uint32_t* id, const R* alpha, std::size_t n) {
-  bool clear = false;
-  for (std::size_t x = 0; x < n; ++x) clear = clear || (id[x] != nothing_there && alpha[x] != R(1));
-  return clear;
+  constexpr std::size_t block = 16;
+  const auto clear = [&](std::size_t x) -> std::uint32_t {
+    return static_cast<std::uint32_t>(id[x] != nothing_there) & static_cast<std::uint32_t>(alpha[x] != R(1));
+  };
+  std::uint32_t any = 0;
+  std::size_t x = 0;
+  for (; x + block <= n && any == 0; x += block)
+    for (std::size_t k = 0; k < block; ++k) any |= clear(x + k);
+  for (; x < n; ++x) any |= clear(x);
+  return any != 0;
 }
 
 /// Light falls on the straight colour: where a point is not opaque, premultiplied albedo is divided by its opacity, in

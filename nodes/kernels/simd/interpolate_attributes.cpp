@@ -330,10 +330,16 @@ void interpolate(const Attribute<float>& a, const AttributeScene<float>& scene, 
 // Fills points [begin, end) of a stretch, which see nothing.
 void fill_empty(const AttributePlanes<float>& planes, const Stretch& at, const PixelRect& rect, int begin,
                 int end) {
+  const Float df;
+  const hn::CappedTag<float, 1> one;
+  const int lanes = static_cast<int>(hn::Lanes(df));
   const auto clear = [&](const PlaneView<float>& plane) {
     if (plane.data == nullptr) return;
     float* row = plane.row(at.sample, at.y - rect.y0) + (at.x - rect.x0);
-    std::fill(row + begin, row + end, 0.0F);
+    // Not std::fill: for so few numbers the compiler's `rep stos` costs more than all else here.
+    int i = begin;
+    for (; i + lanes <= end; i += lanes) hn::StoreU(hn::Zero(df), df, row + i);
+    for (; i < end; ++i) hn::StoreU(hn::Zero(one), one, row + i);
   };
   clear(planes.w);
   for (const Attribute<float>& a : planes.attributes)
