@@ -3,6 +3,7 @@
 #include "runtime/app/files.h"
 #include "runtime/buffers/image.h"
 #include "runtime/core/error.h"
+#include "runtime/core/memory_limit.h"
 #include "runtime/io/buffer_files.h"
 #include "runtime/io/image_files.h"
 #include "runtime/io/mesh_readers.h"
@@ -81,7 +82,7 @@ Raster one_sample(const Raster& raster, int sample) {
   return out;
 }
 
-void save_raster(const Raster& raster, const std::string& path, const FileWarning& warn) {
+void save_raster(const Raster& raster, const std::string& path, const FileWarning& warn, const Context& ctx) {
   const Rect window = raster.frame().window;
   SinkRequest request;
   request.path = path;
@@ -90,8 +91,13 @@ void save_raster(const Raster& raster, const std::string& path, const FileWarnin
   request.warn = warn;
   if (path.ends_with(".exr")) request.bits = 32;  // every bit of a float; colours are half otherwise
   const auto sink = open_image_sink(request);
-  const Tile all = raster.view();
-  sink->write({&all, 1});
+  constexpr int band_rows = 64;
+  for (int y = window.y0; y < window.y1; y += band_rows) {
+    ctx.poll();
+    const Tile band = raster.view().part({window.x0, y, window.x1, std::min(y + band_rows, window.y1)});
+    sink->write({&band, 1});
+  }
+  ctx.poll();
   sink->finish();
 }
 
@@ -129,19 +135,26 @@ Json csv_table(const std::string& path) {
   return out;
 }
 
-void save_buffer(const Buffer& buffer, const std::string& path, std::optional<int> sample,
+Context saving_context(const Buffer& buffer, const CancelFlag* cancel, std::uint64_t memory) {
+  Context ctx;
+  ctx.cancel = cancel;
+  ctx.admit = [held = buffer.bytes(), memory](std::uint64_t all) { check_memory_limit(held, all, memory); };
+  return ctx;
+}
+
+void save_buffer(const Buffer& buffer, const std::string& path, Context& ctx, std::optional<int> sample,
                  const FileWarning& warn) {
   const std::vector<std::string> forms = saved_as(buffer.type());
   const bool whole = std::any_of(forms.begin(), forms.end(),
                                  [&](const std::string& form) { return path.ends_with("." + form); });
-  if (!buffer.type().is_pixels() || whole) return save_buffer_file(buffer, {.path = path, .warn = warn});
+  if (!buffer.type().is_pixels() || whole) return save_buffer_file(buffer, {.path = path, .warn = warn}, ctx);
   const Raster& raster = buffer.type().raster(buffer.data());
   const Frame& frame = raster.frame();
   if (!sample && warn && frame.samples() > 1 && frame.find("R"))
     warn("sampled_output",
          fmt::format("{} gets the first of {} samples a pixel: supersample.resolve would filter them", path,
                      frame.samples()));
-  save_raster(one_sample(raster, sample.value_or(0)), path, warn);
+  save_raster(one_sample(raster, sample.value_or(0)), path, warn, ctx);
 }
 
 }  // namespace frustum

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/core/buffer.h"
+#include "runtime/core/context.h"
 #include "runtime/core/sink.h"
 
 #include <optional>
@@ -15,8 +16,9 @@ Raster one_sample(const Raster& raster, int sample);
 
 // Writes all planes as one layer; the raster has one value a pixel. Warns of linear colours in a format that
 // shows its numbers as they are. Throws WorldError where the file cannot be made, NodeError where the format
-// cannot hold the planes.
-void save_raster(const Raster& raster, const std::string& path, const FileWarning& warn = {});
+// cannot hold the planes, Cancelled where `ctx` is cancelled, and leaves no file then.
+void save_raster(const Raster& raster, const std::string& path, const FileWarning& warn = {},
+                 const Context& ctx = {});
 
 // The pixels of an image file. Throws WorldError where it cannot be read.
 Raster load_raster(const std::string& path);
@@ -30,11 +32,15 @@ Buffer load_buffer(const std::string& path);
 // quote.
 Json csv_table(const std::string& path);
 
+// For saving the buffer: polls `cancel` (may be null), and refuses what together with the buffer is more than `memory`
+// bytes (0: no limit).
+Context saving_context(const Buffer& buffer, const CancelFlag* cancel, std::uint64_t memory);
+
 // Pixels (the given sample of each; the first, with a warning where there are more and they have colours, if
 // none is given) to an image file, and any buffer to a file of its kind: a mesh to .ply, .obj, .glb or .gltf,
 // what has a table form to .csv, everything to .json. Throws NodeError("unknown_format") where it is none of
-// these.
-void save_buffer(const Buffer& buffer, const std::string& path, std::optional<int> sample = {},
+// these, NodeError("memory") and Cancelled as save_buffer_file does.
+void save_buffer(const Buffer& buffer, const std::string& path, Context& ctx, std::optional<int> sample = {},
                  const FileWarning& warn = {});
 
 }  // namespace frustum

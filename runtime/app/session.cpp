@@ -1,6 +1,7 @@
 #include "runtime/app/session.h"
 
 #include "nodes/all_nodes.h"
+#include "runtime/app/export.h"
 #include "runtime/app/files.h"
 #include "runtime/io/buffer_files.h"
 #include "runtime/io/color.h"
@@ -57,7 +58,12 @@ void Session::use_disk(const std::string& folder, std::uint64_t limit_bytes, boo
 
 RunResult Session::run(const Graph& graph, RunOptions options, bool keep) {
   if (!options.make_sink) options.make_sink = open_image_sink;
-  if (!options.save_buffer) options.save_buffer = save_buffer_file;
+  if (!options.save_buffer)
+    options.save_buffer = [cancel = options.cancel, memory = options.memory](const Buffer& buffer,
+                                                                             const SaveRequest& request) {
+      Context ctx = saving_context(buffer, cancel, memory);
+      save_buffer_file(buffer, request, ctx);
+    };
   options.cache = keep && !check_ ? &cache_ : nullptr;
   options.disk = keep && disk_ ? &*disk_ : nullptr;
   options.check_cache = check_;

@@ -97,8 +97,8 @@ Rect window_of(const Buffer& buffer, const std::string& port) {
 }
 
 // What is told of a file names it.
-void save(const Buffer& buffer, const Arguments& args, Diagnostics& warnings) {
-  save_buffer(buffer, args.save, args.sample, [&](std::string_view code, const std::string& message) {
+void save(const Buffer& buffer, const Arguments& args, Context& ctx, Diagnostics& warnings) {
+  save_buffer(buffer, args.save, ctx, args.sample, [&](std::string_view code, const std::string& message) {
     const bool named = message.starts_with(args.save);
     warnings.add({.code = std::string(code),
                   .severity = Severity::warning,
@@ -107,9 +107,10 @@ void save(const Buffer& buffer, const Arguments& args, Diagnostics& warnings) {
   });
 }
 
-int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Arguments& args,
+int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Arguments& args, Context ctx,
                 Diagnostics& warnings, bool json) {
   Json out = header_json(graph.name(port), buffer);
+  ctx.poll();
   std::string text;
   if (!args.pixel.empty()) {
     const auto at = integers("--pixel", args.pixel, 2);
@@ -132,7 +133,7 @@ int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Ar
     text = buffer_text(out);
   }
   if (!args.save.empty()) {
-    save(buffer, args, warnings);
+    save(buffer, args, ctx, warnings);
     out["saved"] = args.save;
     text += args.save + "\n";
   }
@@ -162,7 +163,9 @@ int inspect(const Arguments& args, bool json) {
   check_region(*graph, options, result, warnings);
   if (warnings.has_errors() && result.end == RunResult::End::done) return fail(warnings, json);
   if (result.end != RunResult::End::done) return fail(warnings, json, static_cast<Exit>(exit_code(result)));
-  return show_buffer(*graph, *port, result.buffers.at(*port), args, warnings, json);
+  const Buffer& buffer = result.buffers.at(*port);
+  return show_buffer(*graph, *port, buffer, args, saving_context(buffer, options.cancel, options.memory),
+                     warnings, json);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "runtime/graph/run_state.h"
 
+#include "runtime/core/memory_limit.h"
 #include "runtime/core/text.h"
 #include "runtime/core/version.h"
 #include "runtime/graph/keys.h"
@@ -136,15 +137,7 @@ std::vector<std::pair<std::string, std::string>> RunState::metadata() const {
 }
 
 void RunState::check_memory(std::uint64_t further) const {
-  if (options.memory == 0) return;
-  const std::uint64_t live = ledger.live();
-  if (live + further <= options.memory) return;
-  throw NodeError(
-      "memory",
-      further == 0
-          ? fmt::format("{} are live, above the limit of {}", human_bytes(live), human_bytes(options.memory))
-          : fmt::format("{} are live and {} more are needed, above the limit of {}", human_bytes(live),
-                        human_bytes(further), human_bytes(options.memory)));
+  check_memory_limit(ledger.live(), further, options.memory);
 }
 
 void RunState::take_results(RunResult& result) {

@@ -31,7 +31,7 @@ std::string dump(const Json& j) { return j.dump(-1, ' ', false, Json::error_hand
 
 // Calls row(cells) for every row of the table form, a block at a time; returns the names of the columns.
 template <class Head, class Row>
-void for_rows(const Buffer& buffer, const PartialFile& file, Head&& head, Row&& row) {
+void for_rows(const Buffer& buffer, const PartialFile& file, const Context& ctx, Head&& head, Row&& row) {
   std::size_t total = 1;
   for (std::size_t first = 0; first < total || first == 0; first += block_rows) {
     const Json block = buffer.type().table(buffer.data(), first, block_rows);
@@ -39,16 +39,17 @@ void for_rows(const Buffer& buffer, const PartialFile& file, Head&& head, Row&& 
     if (first == 0) head(block.at("columns"), total);
     for (const Json& cells : block.at("rows")) row(cells);
     file.check();  // a full disk ends it here
+    ctx.poll();
   }
 }
 
-void write_csv(const Buffer& buffer, PartialFile& file) {
+void write_csv(const Buffer& buffer, PartialFile& file, const Context& ctx) {
   for_rows(
-      buffer, file, [&](const Json& columns, std::size_t) { file.add(csv_row(columns)); },
+      buffer, file, ctx, [&](const Json& columns, std::size_t) { file.add(csv_row(columns)); },
       [&](const Json& cells) { file.add(csv_row(cells)); });
 }
 
-void write_json(const Buffer& buffer, const SaveRequest& request, PartialFile& file) {
+void write_json(const Buffer& buffer, const SaveRequest& request, PartialFile& file, const Context& ctx) {
   Json head = {{"format", "frustum.buffer/1"}, {"type", buffer.type().name}};
   for (const auto& [key, value] : request.metadata)
     head[key == "frustum:graph" ? "graph" : key == "ImageDescription" ? "title" : "program"] = value;
@@ -59,7 +60,7 @@ void write_json(const Buffer& buffer, const SaveRequest& request, PartialFile& f
   if (buffer.type().table != nullptr) {
     bool first = true;
     for_rows(
-        buffer, file,
+        buffer, file, ctx,
         [&](const Json& columns, std::size_t total) {
           file.add(fmt::format(",\n\"columns\":{},\n\"total\":{},\n\"rows\":[\n", dump(columns), total));
         },
@@ -89,7 +90,7 @@ std::vector<std::string> saved_as(const BufferType& kind) {
   return out;
 }
 
-void save_buffer_file(const Buffer& buffer, const SaveRequest& request) {
+void save_buffer_file(const Buffer& buffer, const SaveRequest& request, Context& ctx) {
   std::string kind = std::filesystem::path(request.path).extension().string();
   std::transform(kind.begin(), kind.end(), kind.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
@@ -101,11 +102,12 @@ void save_buffer_file(const Buffer& buffer, const SaveRequest& request) {
   if (kind == "exr") return write_deep_file(*buffer.as<Fragments>(), request);
   PartialFile file(request.path);
   if (kind == "json")
-    write_json(buffer, request, file);
+    write_json(buffer, request, file, ctx);
   else if (kind == "csv")
-    write_csv(buffer, file);
+    write_csv(buffer, file, ctx);
   else
-    write_mesh(*buffer.as<Mesh>(), kind, request, file);
+    write_mesh(*buffer.as<Mesh>(), kind, request, file, ctx);
+  ctx.poll();
   file.commit();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/core/buffer.h"
+#include "runtime/core/context.h"
 #include "runtime/core/sink.h"
 
 #include <string>
@@ -26,8 +27,9 @@ std::string csv_row(const Json& cells);
 //   .json                  {"format": "frustum.buffer/1", "type", "graph", "summary", "columns", "rows",
 //                          "total"}: the last three where there is a table form
 //
-// Rows are written in blocks: memory does not grow with the table. Throws NodeError("unknown_format",
-// "format_cannot_hold"), WorldError("cannot_write_file").
-void save_buffer_file(const Buffer& buffer, const SaveRequest& request);
+// Rows are written in blocks: memory does not grow with the table. What meshes need beside is claimed of `ctx`, which
+// is polled every few milliseconds (not while a deep file is written). Throws NodeError("unknown_format",
+// "format_cannot_hold", "memory"), WorldError("cannot_write_file"), Cancelled; no file is left then.
+void save_buffer_file(const Buffer& buffer, const SaveRequest& request, Context& ctx);
 
 }  // namespace frustum

@@ -3,6 +3,7 @@
 #include "runtime/core/error.h"
 #include "runtime/io/gltf_material_writer.h"
 #include "runtime/io/mesh_writers.h"
+#include "runtime/io/vertex_split.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -21,13 +22,15 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "glTF holds little-endian numbers");
 
 constexpr int float_component = 5126, uint_component = 5125;
+constexpr std::size_t block_bytes = std::size_t{1} << 20,
+                      poll_rows = std::size_t{1} << 16;  // between two polls
 
 // From a mesh to the JSON and the bytes of a glTF file. Bytes are those of the columns where they are f32
 // already.
 class Writer {
  public:
-  Writer(const Mesh& mesh, const SaveRequest& request)
-      : mesh_(with_materials(split_corners(mesh))), request_(request) {}
+  Writer(const Mesh& mesh, const SaveRequest& request, Context& ctx)
+      : mesh_(with_materials(split_corners(mesh, ctx), ctx)), request_(request), ctx_(ctx) {}
 
   void run(bool binary, PartialFile& to) {
     describe();
@@ -39,7 +42,7 @@ class Writer {
 
  private:
   // Faces that are seen through need a material that says so, and faces without a number have the first one.
-  static Mesh with_materials(Mesh mesh) {
+  static Mesh with_materials(Mesh mesh, Context& ctx) {
     const bool some = mesh.materials && !mesh.materials->materials.empty();
     const auto opaque = opaque_faces(mesh);
     const bool needs =
@@ -47,6 +50,7 @@ class Writer {
     if (mesh.faces() == 0 || (!some && !needs)) return mesh;
     if (!some) mesh.materials = std::make_shared<const MaterialSet>(MaterialSet{{Material{}}});
     if (some && mesh.find("material") != nullptr) return mesh;
+    ctx.claim(sizeof(std::uint32_t) * mesh.faces());
     auto column = Column::make<std::uint32_t>("material", Domain::face, mesh.faces());
     std::fill_n(column->values<std::uint32_t>().data(), mesh.faces(), 0u);
     return mesh.with(std::move(column));
@@ -88,11 +92,15 @@ class Writer {
   // The numbers of a real column as f32; `flip`: 1 - v of the second.
   std::string_view floats(const Column& c, bool flip) {
     if (c.kind() == NumberKind::f32 && !flip) return {static_cast<const char*>(c.data()), c.bytes()};
+    const std::size_t numbers = c.rows() * static_cast<std::size_t>(c.width());
+    ctx_.claim(sizeof(float) * numbers);
     std::vector<float> out;
-    out.reserve(c.rows() * static_cast<std::size_t>(c.width()));
-    for (std::size_t i = 0; i < c.rows(); ++i)
+    out.reserve(numbers);
+    for (std::size_t i = 0; i < c.rows(); ++i) {
+      if (i % poll_rows == 0) ctx_.poll();
       for (int k = 0; k < c.width(); ++k)
         out.push_back(static_cast<float>(flip && k == 1 ? 1 - c.number(i, k) : c.number(i, k)));
+    }
     return keep(std::move(out));
   }
 
@@ -108,6 +116,7 @@ class Writer {
       for (std::size_t k = 0; k < width; ++k) {
         float least = std::numeric_limits<float>::infinity(), most = -least;
         for (std::size_t i = 0; i < c.rows(); ++i) {
+          if (i % poll_rows == 0) ctx_.poll();
           float v;
           std::memcpy(&v, bytes.data() + 4 * (i * width + k), 4);
           least = std::min(least, v), most = std::max(most, v);
@@ -164,7 +173,12 @@ class Writer {
       return;
     }
     const auto number = material->values<std::uint32_t>();
-    std::vector<std::vector<glm::uvec3>> groups(mesh_.materials->materials.size());
+    std::vector<std::size_t> sizes(mesh_.materials->materials.size(), 0);
+    for (const std::uint32_t m : number) ++sizes[m];
+    ctx_.claim(triangles.size_bytes());
+    std::vector<std::vector<glm::uvec3>> groups(sizes.size());
+    for (std::size_t m = 0; m < groups.size(); ++m) groups[m].reserve(sizes[m]);
+    ctx_.poll();
     for (std::size_t f = 0; f < triangles.size(); ++f) groups[number[f]].push_back(triangles[f]);
     for (std::size_t m = 0; m < groups.size(); ++m)
       if (!groups[m].empty()) add_primitive(attributes, keep(std::move(groups[m])), m);
@@ -253,10 +267,12 @@ class Writer {
     const std::size_t body = size_ != 0 ? 8 + size_ : 0;
     to.add("glTF" + word(2) + word(12 + 8 + json.size() + body) + word(json.size()) + "JSON" + json);
     if (body != 0) to.add(word(size_) + std::string("BIN\0", 4));
-    for (const std::string_view p : pieces_) {
-      to.add(p);
-      to.check();
-    }
+    for (const std::string_view p : pieces_)
+      for (std::size_t at = 0; at < p.size(); at += block_bytes) {
+        to.add(p.substr(at, block_bytes));
+        to.check();
+        ctx_.poll();
+      }
   }
 
   void write_gltf(PartialFile& to) {
@@ -282,9 +298,10 @@ class Writer {
         if (++held < 3) continue;
         for (int shift = 18; shift >= 0; shift -= 6) out += digits[bits >> shift & 63];
         bits = 0, held = 0;
-        if (out.size() < (1 << 20)) continue;
+        if (out.size() < block_bytes) continue;
         to.add(out);
         to.check();
+        ctx_.poll();
         out.clear();
       }
     if (held == 1) (out += digits[bits >> 2 & 63]) += digits[bits << 4 & 63], out += "==";
@@ -295,6 +312,7 @@ class Writer {
 
   Mesh mesh_;
   const SaveRequest& request_;
+  Context& ctx_;
   Json json_, views_ = Json::array(), accessors_ = Json::array(), primitives_ = Json::array();
   std::vector<std::string_view> pieces_;
   std::vector<std::shared_ptr<void>> kept_;
@@ -303,8 +321,8 @@ class Writer {
 
 }  // namespace
 
-void write_gltf(const Mesh& mesh, bool binary, const SaveRequest& request, PartialFile& to) {
-  Writer(mesh, request).run(binary, to);
+void write_gltf(const Mesh& mesh, bool binary, const SaveRequest& request, PartialFile& to, Context& ctx) {
+  Writer(mesh, request, ctx).run(binary, to);
 }
 
 }  // namespace frustum

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/buffers/mesh.h"
+#include "runtime/core/context.h"
 #include "runtime/core/partial_file.h"
 #include "runtime/core/sink.h"
 
@@ -22,18 +23,15 @@ namespace frustum {
 //               them is seen through, as runtime/io/gltf_material_writer.h says. Both are one file each: a .gltf
 //               holds its numbers and pictures inside, as base64
 //
-// ply and gltf have values of vertices only: a mesh with columns of corners is cut first (split_corners).
-// Throws NodeError("format_cannot_hold").
-void write_mesh(const Mesh& mesh, std::string_view extension, const SaveRequest& request, PartialFile& to);
+// ply and gltf have values of vertices only: vertices are split (vertex_split.h) where a mesh has columns of corners
+// that the format holds. The memory of that, and of numbers that gltf holds in another form, is claimed of `ctx`, which
+// is polled every few milliseconds. Throws NodeError("format_cannot_hold", "memory"), Cancelled.
+void write_mesh(const Mesh& mesh, std::string_view extension, const SaveRequest& request, PartialFile& to,
+                Context& ctx);
 
-void write_ply(const Mesh& mesh, const SaveRequest& request, PartialFile& to);
-void write_obj(const Mesh& mesh, const SaveRequest& request, PartialFile& to);
-void write_gltf(const Mesh& mesh, bool binary, const SaveRequest& request, PartialFile& to);
-
-// The same triangles with every column of corners made one of vertices: a vertex is there once for each
-// different set of values (by bits) that its corners have, in the order of first use; vertices that no face
-// uses go. A mesh without columns of corners is returned as it is. Cost: one sort of the corners.
-Mesh split_corners(const Mesh& mesh);
+void write_ply(const Mesh& mesh, const SaveRequest& request, PartialFile& to, Context& ctx);
+void write_obj(const Mesh& mesh, const SaveRequest& request, PartialFile& to, Context& ctx);
+void write_gltf(const Mesh& mesh, bool binary, const SaveRequest& request, PartialFile& to, Context& ctx);
 
 // Calls request.warn, if there is one.
 void warn_left_out(const SaveRequest& request, std::string_view format, std::string_view what);

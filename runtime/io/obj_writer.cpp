@@ -13,7 +13,7 @@ namespace {
 // Lines go to the file in blocks.
 class Lines {
  public:
-  explicit Lines(PartialFile& to) : to_(to) {}
+  Lines(PartialFile& to, const Context& ctx) : to_(to), ctx_(ctx) {}
   template <class... T>
   void add(fmt::format_string<T...> format, T&&... values) {
     fmt::format_to(std::back_inserter(text_), format, std::forward<T>(values)...);
@@ -22,11 +22,13 @@ class Lines {
   void flush() {
     to_.add({text_.data(), text_.size()});
     to_.check();
+    ctx_.poll();
     text_.clear();
   }
 
  private:
   PartialFile& to_;
+  const Context& ctx_;
   fmt::memory_buffer text_;
 };
 
@@ -71,7 +73,7 @@ std::string line_name(std::string name) {
 
 }  // namespace
 
-void write_obj(const Mesh& mesh, const SaveRequest& request, PartialFile& to) {
+void write_obj(const Mesh& mesh, const SaveRequest& request, PartialFile& to, Context& ctx) {
   const Column *uv = mesh.find("uv"), *normal = mesh.find("normal"), *color = mesh.find("color"),
                *material = mesh.materials ? mesh.find("material") : nullptr;
   if (color != nullptr && color->domain() != Domain::vertex) {
@@ -84,7 +86,7 @@ void write_obj(const Mesh& mesh, const SaveRequest& request, PartialFile& to) {
   if (color != nullptr && color->width() == 4) warn_left_out(request, "OBJ", "the opacity of column 'color'");
   if (material != nullptr) warn_left_out(request, "OBJ", "what its materials are, only for their names");
 
-  Lines lines(to);
+  Lines lines(to, ctx);
   for (const auto& [key, value] : request.metadata) lines.add("# {} {}\n", key, line_name(value));
   add_positions(lines, mesh, color);
   add_rows(lines, "vt", uv);

@@ -1,4 +1,5 @@
 #include "runtime/io/mesh_writers.h"
+#include "runtime/io/vertex_split.h"
 
 #include <fmt/format.h>
 
@@ -6,6 +7,8 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <iterator>
+#include <optional>
 
 namespace frustum {
 namespace {
@@ -37,35 +40,40 @@ std::string_view type_of(NumberKind k) {
 // Columns side by side, a row after another.
 class Rows {
  public:
-  void add(const Column& c) {
-    columns_.push_back(&c);
-    sizes_.push_back(static_cast<std::size_t>(c.width()) * bytes_of(c.kind()));
+  //   order  which rows of the column, one after another; null: all as they stand
+  void add(const Column& c, const std::vector<std::uint32_t>* order = nullptr) {
+    columns_.push_back({static_cast<const char*>(c.data()),
+                        static_cast<std::size_t>(c.width()) * bytes_of(c.kind()), order});
     for (const std::string& name : property_names(c))
       properties += fmt::format("property {} {}\n", type_of(c.kind()), name);
   }
   char* put(std::size_t row, char* to) const {
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      std::memcpy(to, static_cast<const char*>(columns_[i]->data()) + sizes_[i] * row, sizes_[i]);
-      to += sizes_[i];
+    for (const Part& c : columns_) {
+      std::memcpy(to, c.data + c.bytes * (c.order != nullptr ? (*c.order)[row] : row), c.bytes);
+      to += c.bytes;
     }
     return to;
   }
   std::size_t bytes() const {
     std::size_t sum = 0;
-    for (const std::size_t n : sizes_) sum += n;
+    for (const Part& c : columns_) sum += c.bytes;
     return sum;
   }
 
   std::string properties;
 
  private:
-  std::vector<const Column*> columns_;
-  std::vector<std::size_t> sizes_;
+  struct Part {
+    const char* data;
+    std::size_t bytes;  // of a row
+    const std::vector<std::uint32_t>* order;
+  };
+  std::vector<Part> columns_;
 };
 
 // Calls row(i, to) for every row; it returns where the next begins.
 template <class Row>
-void write_rows(std::size_t rows, std::size_t row_bytes, PartialFile& to, Row&& row) {
+void write_rows(std::size_t rows, std::size_t row_bytes, PartialFile& to, const Context& ctx, Row&& row) {
   constexpr std::size_t block = 1 << 14;
   std::vector<char> bytes(row_bytes * std::min(block, rows));
   for (std::size_t first = 0; first < rows; first += block) {
@@ -73,37 +81,53 @@ void write_rows(std::size_t rows, std::size_t row_bytes, PartialFile& to, Row&& 
     for (std::size_t i = first; i < std::min(first + block, rows); ++i) at = row(i, at);
     to.write(bytes.data(), static_cast<std::size_t>(at - bytes.data()));
     to.check();
+    ctx.poll();
   }
+}
+
+// Every column of corners is of vertices in the file.
+std::optional<VertexSplit> split_of(const Mesh& mesh, Context& ctx) {
+  std::vector<Ref<Column>> of_corners;
+  std::copy_if(mesh.columns.begin(), mesh.columns.end(), std::back_inserter(of_corners),
+               [](const Ref<Column>& c) { return c->domain() == Domain::corner; });
+  if (of_corners.empty()) return {};
+  return split_vertices(mesh, of_corners, ctx);
+}
+
+std::string comments(const SaveRequest& request) {
+  std::string out;
+  for (const auto& [key, value] : request.metadata) {
+    std::string line = fmt::format("{} {}", key, value);
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c < ' '; }, ' ');
+    out += fmt::format("comment {}\n", line);
+  }
+  return out;
 }
 
 }  // namespace
 
-void write_ply(const Mesh& original, const SaveRequest& request, PartialFile& to) {
-  const Mesh mesh = split_corners(original);
+void write_ply(const Mesh& mesh, const SaveRequest& request, PartialFile& to, Context& ctx) {
+  const auto split = split_of(mesh, ctx);
   Rows vertices, faces;
   for (const Ref<Column>& c : mesh.columns) {
     if (c->domain() == Domain::vertex)
-      vertices.add(*c);
+      vertices.add(*c, split ? &split->vertices : nullptr);
+    else if (c->domain() == Domain::corner)
+      vertices.add(*c, &split->corners);
     else if (c->domain() == Domain::face && c->name() != "triangle")
       faces.add(*c);
     else if (c->domain() == Domain::mesh)
       warn_left_out(request, "PLY", fmt::format("column '{}' of the mesh", c->name()));
   }
-  std::string head = "ply\nformat binary_little_endian 1.0\n";
-  for (const auto& [key, value] : request.metadata) {
-    std::string line = fmt::format("{} {}", key, value);
-    std::replace_if(
-        line.begin(), line.end(), [](char c) { return c < ' '; }, ' ');
-    head += fmt::format("comment {}\n", line);
-  }
-  to.add(head +
+  const std::size_t count = split ? split->vertices.size() : mesh.vertices();
+  to.add("ply\nformat binary_little_endian 1.0\n" + comments(request) +
          fmt::format(
              "element vertex {}\n{}element face {}\nproperty list uchar uint vertex_indices\n{}end_header\n",
-             mesh.vertices(), vertices.properties, mesh.faces(), faces.properties));
-  write_rows(mesh.vertices(), vertices.bytes(), to,
-             [&](std::size_t i, char* at) { return vertices.put(i, at); });
-  const auto triangles = mesh.triangles();
-  write_rows(mesh.faces(), 13 + faces.bytes(), to, [&](std::size_t i, char* at) {
+             count, vertices.properties, mesh.faces(), faces.properties));
+  write_rows(count, vertices.bytes(), to, ctx, [&](std::size_t i, char* at) { return vertices.put(i, at); });
+  const auto triangles = split ? split->triangles->values<glm::uvec3>() : mesh.triangles();
+  write_rows(mesh.faces(), 13 + faces.bytes(), to, ctx, [&](std::size_t i, char* at) {
     *at = 3;
     std::memcpy(at + 1, &triangles[i], 12);
     return faces.put(i, at + 13);

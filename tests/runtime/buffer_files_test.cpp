@@ -7,6 +7,7 @@
 #include "runtime/io/file_bytes.h"
 #include "runtime/io/mesh_readers.h"
 #include "runtime/io/mesh_writers.h"
+#include "runtime/io/vertex_split.h"
 #include "tests/support/temp_file.h"
 
 #include <fmt/format.h>
@@ -15,6 +16,8 @@
 
 #include <cstring>
 #include <filesystem>
+#include <map>
+#include <utility>
 
 namespace frustum {
 namespace {
@@ -88,13 +91,15 @@ class Files : public testing::Test {
  protected:
   Saved save(const Buffer& b, const std::string& name) {
     Saved out{folder.file(name), {}};
-    save_buffer_file(b, {.path = out.path,
-                         .metadata = {{"Software", "frustum test"},
-                                      {"ImageDescription", "two\nlines"},
-                                      {"frustum:graph", "12ab"}},
-                         .warn = [&](std::string_view code, const std::string& what) {
-                           out.warnings.push_back(fmt::format("{}: {}", code, what));
-                         }});
+    save_buffer_file(
+        b,
+        {.path = out.path,
+         .metadata = {{"Software", "frustum test"},
+                      {"ImageDescription", "two\nlines"},
+                      {"frustum:graph", "12ab"}},
+         .warn = [&](std::string_view code,
+                     const std::string& what) { out.warnings.push_back(fmt::format("{}: {}", code, what)); }},
+        ctx);
     return out;
   }
   std::pair<std::string, std::string> problem(const Buffer& b, const std::string& name) {
@@ -108,6 +113,7 @@ class Files : public testing::Test {
     return {};
   }
   test::TempFolder folder;
+  Context ctx;
 };
 
 TEST_F(Files, PlyGivesEveryColumnBackBitForBit) {
@@ -167,7 +173,93 @@ TEST_F(Files, CornersAreSplitWhereAFormatHasVerticesOnly) {
   const auto material = m.at("ply_material").values<std::uint32_t>();
   EXPECT_THAT(std::vector(material.begin(), material.end()), ElementsAre(1, 0));
   const Mesh whole = sheet<float>(3);
-  EXPECT_EQ(split_corners(whole).vertices(), whole.vertices());
+  EXPECT_EQ(split_corners(whole, ctx).vertices(), whole.vertices());
+}
+
+// A sheet whose faces have values of their own: of each square one half, so that corners of both kinds meet.
+template <class T>
+Mesh with_corners(Mesh m, const char* name) {
+  auto column = Column::make<T>(name, Domain::corner, 3 * m.faces());
+  for (std::size_t i = 0; i < column->rows(); ++i) column->template values<T>()[i] = T(i / 3 % 2);
+  return m.with(std::move(column));
+}
+
+// The rule, by a map instead of by sorting.
+TEST_F(Files, VerticesAreSplitInTheOrderOfFirstUse) {
+  const Mesh m = with_corners<float>(sheet<float>(60), "half");
+  const Mesh out = split_corners(m, ctx);
+  ASSERT_EQ(out.validate(), "");
+  std::map<std::pair<std::uint32_t, float>, std::uint32_t> known;
+  std::vector<std::uint32_t> of;
+  for (std::size_t i = 0; i < 3 * m.faces(); ++i) {
+    const std::uint32_t v = m.triangles()[i / 3][static_cast<glm::length_t>(i % 3)];
+    const auto [at, is_new] = known.try_emplace({v, static_cast<float>(i / 3 % 2)}, of.size());
+    if (is_new) of.push_back(v);
+    ASSERT_EQ(out.triangles()[i / 3][static_cast<glm::length_t>(i % 3)], at->second) << i;
+  }
+  ASSERT_EQ(out.vertices(), of.size());
+  for (std::size_t i = 0; i < of.size(); ++i)
+    ASSERT_EQ(out.at("position").values<glm::vec3>()[i], m.at("position").values<glm::vec3>()[of[i]]);
+}
+
+// What is claimed is what the lists of a split take; nothing where no corner has values that the format holds.
+TEST_F(Files, WhatASplitTakesIsClaimedBeforeItIsTaken) {
+  save(buffer(sheet<float>(40)), "no_corners.ply");
+  EXPECT_EQ(ctx.claimed(), 0u);
+  const Mesh m = with_corners<float>(sheet<float>(40), "half");
+  const std::uint64_t lists = 24 * m.faces() + 4 * m.vertices();
+  save(buffer(m), "m.ply");
+  const std::size_t vertices = read(folder.file("m.ply")).vertices();
+  EXPECT_GT(vertices, m.vertices());
+  EXPECT_EQ(ctx.claimed(), lists + 8 * vertices);
+  for (const char* name : {"refused.ply", "refused.glb"}) {
+    ctx = {};
+    ctx.admit = [&](std::uint64_t all) {
+      if (all >= lists) throw NodeError("memory", "too much");
+    };
+    EXPECT_EQ(problem(buffer(m), name).first, "memory") << name;
+    EXPECT_EQ(ctx.claimed(), lists) << name;
+    EXPECT_FALSE(std::filesystem::exists(folder.file(name)));
+  }
+  ctx = {};
+  Mesh plain = sheet<float>(40);
+  std::erase_if(plain.columns, [](const Ref<Column>& c) { return c->name() == "uv"; });  // gltf copies it
+  save(buffer(with_corners<std::uint32_t>(plain, "label")), "labels.glb");
+  EXPECT_EQ(ctx.claimed(), 0u) << "glTF leaves it out";
+}
+
+TEST_F(Files, CancelledWritingLeavesNoFile) {
+  CancelFlag flag;
+  flag.cancel();
+  ctx.cancel = &flag;
+  const Buffer mesh = buffer(with_corners<float>(sheet<float>(40), "half"));
+  for (const char* name : {"m.ply", "m.obj", "m.glb", "m.gltf", "m.csv", "m.json"})
+    EXPECT_THROW(save(mesh, name), Cancelled) << name;
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+// What was written when the writing ended is seen through a second name of the temporary file.
+TEST_F(Files, CancelledWritingEndsWithinRows) {
+  const float one[] = {1};
+  const Buffer mesh =
+      buffer(sheet<float>(600).with(Column::make<float>("area", Domain::mesh, std::span<const float>(one))));
+  for (const std::string name : {"m.ply", "m.obj"}) {
+    const auto whole = std::filesystem::file_size(save(mesh, name).path);
+    const std::string path = folder.file("cut_" + name), seen = folder.file("seen_" + name);
+    CancelFlag flag;
+    ctx.cancel = &flag;
+    const auto cancel = [&](std::string_view, const std::string&) {
+      for (const auto& file : std::filesystem::directory_iterator(folder.path()))
+        if (file.path().extension() == ".part" && !flag.cancelled())
+          std::filesystem::create_hard_link(file.path(), seen);
+      flag.cancel();
+    };
+    EXPECT_THROW(save_buffer_file(mesh, {.path = path, .metadata = {}, .warn = cancel}, ctx), Cancelled);
+    ctx.cancel = nullptr;
+    EXPECT_FALSE(std::filesystem::exists(path));
+    ASSERT_TRUE(std::filesystem::exists(seen)) << name;
+    EXPECT_LT(std::filesystem::file_size(seen), whole / 4) << name;
+  }
 }
 
 TEST_F(Files, ObjKeepsCornersAndNamesOfMaterials) {

@@ -97,9 +97,11 @@ struct Interrupted {
 // Starts a program that takes minutes, waits until it is at work (until `sign`, if given, holds), and sends it
 // a signal, `times` times a millisecond apart: those that come before the first is handled count as one.
 Interrupted interrupted(std::vector<std::string> arguments, int signal, const TempFolder& folder,
-                        int times = 1, const std::function<bool()>& sign = {}) {
+                        int times = 1, const std::function<bool()>& sign = {},
+                        const std::vector<std::string>& more = {"--set", "resolution=[2048, 2048]", "--set",
+                                                                "samples=256"}) {
   std::string line = "exec " + quoted(test::frustum_program());
-  arguments.insert(arguments.end(), {"--set", "resolution=[2048, 2048]", "--set", "samples=256"});
+  arguments.insert(arguments.end(), more.begin(), more.end());
   for (const std::string& a : arguments) line += " " + quoted(a);
   line += " >" + quoted(folder.file("said")) + " 2>" + quoted(folder.file("warned"));
   const pid_t child = ::fork();
@@ -155,6 +157,59 @@ TEST(CliEnds, ASecondInterruptLeavesNoTemporaryFile) {
   EXPECT_EQ(r.code, 130) << r.err;
   ASSERT_TRUE(std::filesystem::exists(out)) << r.err;
   EXPECT_TRUE(std::filesystem::is_empty(out));
+}
+
+std::string sphere(const std::string& file, int segments, int rings) {
+  return graph_with(R"("s": { "type": "mesh.sphere", "params": { "segments": )" + std::to_string(segments) +
+                        R"(, "rings": )" + std::to_string(rings) + " } }",
+                    R"("o": { "from": "s", "file": ")" + file + R"(" })");
+}
+
+// The interrupt comes when the file has been begun, of which most is still to be written.
+TEST(CliEnds, AnInterruptWhileAMeshOrATableIsWrittenLeavesNoFile) {
+  for (const std::string file : {"m.ply", "m.obj", "m.gltf", "m.csv", "m.json"}) {
+    const TempFolder folder;
+    const auto graph = folder.write("g.json", sphere(file, 4096, 512));
+    const std::string out = folder.file("out");
+    const auto begun = [&] { return std::filesystem::exists(out) && !std::filesystem::is_empty(out); };
+    const auto r = interrupted({"run", graph, "--out", out}, SIGINT, folder, 1, begun, {});
+    EXPECT_EQ(r.code, 130) << file << r.err;
+    EXPECT_THAT(r.err, HasSubstr("cancelled")) << file;
+    ASSERT_TRUE(std::filesystem::exists(out)) << file;
+    EXPECT_TRUE(std::filesystem::is_empty(out)) << file;
+  }
+}
+
+TEST(CliEnds, AnInterruptWhileInspectSavesLeavesNoFile) {
+  const TempFolder folder;
+  const auto graph = folder.write("g.json", sphere("m.ply", 2048, 512));
+  const std::string out = folder.file("out");
+  std::filesystem::create_directory(out);
+  const auto begun = [&] { return !std::filesystem::is_empty(out); };
+  const auto r = interrupted({"inspect", graph, "s", "--save", out + "/m.csv"}, SIGINT, folder, 1, begun, {});
+  EXPECT_EQ(r.code, 130) << r.err;
+  EXPECT_TRUE(std::filesystem::is_empty(out));
+}
+
+// The sphere has 48 MiB, and its vertices must be split: coordinates are of corners.
+TEST(CliEnds, WhatSavingAMeshTakesCountsAsMemory) {
+  const TempFolder folder;
+  const std::string out = folder.file("out");
+  for (const std::string file : {"m.ply", "m.glb"}) {
+    const auto graph = folder.write("g.json", sphere(file, 1024, 512));
+    for (const auto& command : {std::vector<std::string>{"run", graph, "--out", out},
+                                {"inspect", graph, "s", "--save", out + "/" + file}}) {
+      auto arguments = command;
+      arguments.insert(arguments.end(), {"--memory", "60M"});
+      const auto refused = frustum(arguments);
+      EXPECT_EQ(refused.code, 2) << refused.err;
+      EXPECT_THAT(refused.err, AllOf(HasSubstr("error[memory]"), HasSubstr("above the limit of 60")));
+      EXPECT_FALSE(std::filesystem::exists(out + "/" + file));
+      arguments.back() = "140M";
+      EXPECT_EQ(frustum(arguments).code, 0) << file;
+      EXPECT_TRUE(std::filesystem::remove(out + "/" + file)) << file;
+    }
+  }
 }
 
 // A pass writes its files side by side: the one that cannot be written is named, not the first of them.

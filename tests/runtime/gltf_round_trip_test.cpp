@@ -60,10 +60,12 @@ class RoundTrip : public testing::TestWithParam<const char*> {
   Mesh there_and_back(const Mesh& mesh) {
     const std::string path = folder_.file(fmt::format("m.{}", GetParam()));
     warnings_.clear();
+    Context saving;
     save_buffer_file(Ref<Mesh>(test::shared(mesh)),
-                     {.path = path, .metadata = {}, .warn = [&](std::string_view, const std::string& what) {
-                        warnings_.push_back(what);
-                      }});
+                     {.path = path,
+                      .metadata = {},
+                      .warn = [&](std::string_view, const std::string& what) { warnings_.push_back(what); }},
+                     saving);
     Context ctx;
     const FileBytes bytes({path, path});
     Mesh back = read_gltf(bytes.text(), {path, path}, true, ctx).mesh;

@@ -61,7 +61,8 @@ Ref<Fragments> load(const std::string& file, Context* ctx = nullptr, const std::
 
 std::string saved(const Fragments& f, const test::TempFolder& folder) {
   const std::string path = folder.file("deep.exr");
-  save_buffer_file(Ref<Fragments>(std::make_shared<const Fragments>(f)), {.path = path});
+  Context ctx;
+  save_buffer_file(Ref<Fragments>(std::make_shared<const Fragments>(f)), {.path = path}, ctx);
   return path;
 }
 
