@@ -1,10 +1,12 @@
 #include "nodes/kernels/transfer.h"
+#include "runtime/io/distinct_rows.h"
 #include "runtime/io/mesh_writers.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <set>
 
 namespace frustum {
@@ -43,21 +45,38 @@ void add_numbers(Lines& lines, const Column& c, std::size_t row) {
   }
 }
 
-void add_rows(Lines& lines, std::string_view key, const Column* c) {
-  for (std::size_t i = 0; c != nullptr && i < c->rows(); ++i) {
-    lines.add("{}", key);
-    add_numbers(lines, *c, i);
-    lines.add("\n");
+// The lines of a column, and which of them a corner points at. Readers join corners by these numbers, so values
+// of corners that are equal by bits share one line: a line each would take every triangle apart.
+class Lookup {
+ public:
+  Lookup(const Column* c, Context& ctx) : column_(c) {
+    if (c != nullptr && c->domain() == Domain::corner) distinct_ = distinct_rows(*c, ctx);
   }
-}
+  explicit operator bool() const { return column_ != nullptr; }
+  void add_lines(Lines& lines, std::string_view key) const {
+    const std::size_t count = distinct_ ? distinct_->rows.size() : column_ != nullptr ? column_->rows() : 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      lines.add("{}", key);
+      add_numbers(lines, *column_, distinct_ ? distinct_->rows[i] : i);
+      lines.add("\n");
+    }
+  }
+  // Counted from 1, of a corner (3 f + k) at a vertex.
+  std::size_t line(std::size_t corner, std::size_t vertex) const {
+    return 1 + (distinct_ ? distinct_->index[corner] : vertex);
+  }
+
+ private:
+  const Column* column_;
+  std::optional<DistinctRows> distinct_;
+};
 
 void add_positions(Lines& lines, const Mesh& mesh, const Column* color) {
   const Column& position = mesh.at("position");
-  if (color == nullptr) return add_rows(lines, "v", &position);
   for (std::size_t i = 0; i < position.rows(); ++i) {
     lines.add("v");
     add_numbers(lines, position, i);
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; color != nullptr && k < 3; ++k)
       lines.add(" {}", static_cast<float>(kernels::encode(kernels::Curve::srgb, color->number(i, k))));
     lines.add("\n");
   }
@@ -69,6 +88,27 @@ std::string line_name(std::string name) {
       name.begin(), name.end(), [](char c) { return c >= 0 && c < ' '; }, '_');
   while (!name.empty() && name.back() == '\\') name.back() = '_';
   return name.empty() ? "unnamed" : name;
+}
+
+void add_faces(Lines& lines, const Mesh& mesh, const Lookup& uv, const Lookup& normal,
+               const Column* material) {
+  const auto triangles = mesh.triangles();
+  std::optional<std::uint32_t> now;
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    if (material != nullptr) {
+      const std::uint32_t m = material->values<std::uint32_t>()[f];
+      if (now != m) lines.add("usemtl {}\n", line_name(mesh.materials->materials[m].name));
+      now = m;
+    }
+    lines.add("f");
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t v = triangles[f][static_cast<glm::length_t>(k)];
+      lines.add(" {}", v + 1);
+      if (uv) lines.add("/{}", uv.line(3 * f + k, v));
+      if (normal) lines.add("{}{}", uv ? "/" : "//", normal.line(3 * f + k, v));
+    }
+    lines.add("\n");
+  }
 }
 
 }  // namespace
@@ -89,26 +129,10 @@ void write_obj(const Mesh& mesh, const SaveRequest& request, PartialFile& to, Co
   Lines lines(to, ctx);
   for (const auto& [key, value] : request.metadata) lines.add("# {} {}\n", key, line_name(value));
   add_positions(lines, mesh, color);
-  add_rows(lines, "vt", uv);
-  add_rows(lines, "vn", normal);
-  const auto triangles = mesh.triangles();
-  std::optional<std::uint32_t> now;
-  for (std::size_t f = 0; f < triangles.size(); ++f) {
-    if (material != nullptr) {
-      const std::uint32_t m = material->values<std::uint32_t>()[f];
-      if (now != m) lines.add("usemtl {}\n", line_name(mesh.materials->materials[m].name));
-      now = m;
-    }
-    lines.add("f");
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t v = triangles[f][static_cast<glm::length_t>(k)];
-      const auto index = [&](const Column& c) { return 1 + (c.domain() == Domain::corner ? 3 * f + k : v); };
-      lines.add(" {}", v + 1);
-      if (uv != nullptr) lines.add("/{}", index(*uv));
-      if (normal != nullptr) lines.add("{}{}", uv == nullptr ? "//" : "/", index(*normal));
-    }
-    lines.add("\n");
-  }
+  const Lookup uv_lines(uv, ctx), normal_lines(normal, ctx);
+  uv_lines.add_lines(lines, "vt");
+  normal_lines.add_lines(lines, "vn");
+  add_faces(lines, mesh, uv_lines, normal_lines, material);
   lines.flush();
 }
 

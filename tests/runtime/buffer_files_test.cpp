@@ -269,6 +269,45 @@ TEST_F(Files, ObjKeepsCornersAndNamesOfMaterials) {
   EXPECT_EQ(m.materials->materials[1].name, "floor");
 }
 
+// Values of corners that only a seam tells apart, as a sphere has them.
+Mesh with_seam(std::size_t n) {
+  Mesh m = sheet<float>(n);
+  const auto triangles = m.triangles();
+  auto uv = Column::make<glm::vec2>("uv", Domain::corner, 3 * m.faces());
+  auto normal = Column::make<glm::vec3>("normal", Domain::corner, 3 * m.faces());
+  for (std::size_t c = 0; c < 3 * m.faces(); ++c) {
+    const std::uint32_t v = triangles[c / 3][static_cast<glm::length_t>(c % 3)];
+    uv->values<glm::vec2>()[c] = m.at("uv").values<glm::vec2>()[v];
+    normal->values<glm::vec3>()[c] = m.at("normal").values<glm::vec3>()[v];
+    if (c < 3 * m.faces() / 2) uv->values<glm::vec2>()[c].x += 1;
+  }
+  uv->values<glm::vec2>()[0].y = -0.f;  // other bits than 0, which the others at this vertex have
+  uv->values<glm::vec2>()[3].y = 0.f;
+  std::erase_if(m.columns, [](const auto& c) { return c->name() == "uv" || c->name() == "normal"; });
+  m.columns.push_back(uv), m.columns.push_back(normal);
+  EXPECT_EQ(m.validate(), "");
+  return m;
+}
+
+TEST_F(Files, ObjSharesVerticesAsPlyDoes) {
+  const Mesh m = with_seam(21);
+  const Mesh ply = read(save(buffer(m), "m.ply").path), obj = read(save(buffer(m), "m.obj").path);
+  EXPECT_EQ(ply.vertices(), 21u * 21u + 21u + 1u);  // the seam is one row; one corner has a zero of its own
+  EXPECT_EQ(obj.vertices(), ply.vertices());
+  ASSERT_EQ(obj.faces(), m.faces());
+  const auto a = obj.triangles(), b = m.triangles();
+  for (std::size_t c = 0; c < 3 * m.faces(); ++c) {
+    const auto k = static_cast<glm::length_t>(c % 3);
+    const std::uint32_t v = a[c / 3][k];
+    const glm::vec2 uv = obj.at("uv").values<glm::vec2>()[v], was = m.at("uv").values<glm::vec2>()[c];
+    EXPECT_EQ(std::memcmp(&uv, &was, sizeof uv), 0) << c;
+    EXPECT_EQ(obj.at("normal").values<glm::vec3>()[v], m.at("normal").values<glm::vec3>()[c]);
+    EXPECT_EQ(obj.at("position").values<glm::vec3>()[v], m.at("position").values<glm::vec3>()[b[c / 3][k]]);
+  }
+  const std::string text = text_of(folder.file("m.obj"));
+  EXPECT_EQ(text, text_of(save(buffer(m), "again.obj").path));
+}
+
 // The JSON and the bytes of a glTF file, taken apart here by the letter of its specification.
 struct Gltf {
   Json json;
