@@ -24,6 +24,19 @@ std::string temporary_name(const std::filesystem::path& path) {
       .string();
 }
 
+// Another run that fails may remove the folder while it is still empty; it is made again then.
+int open_with_folder(const std::filesystem::path& path, const std::string& temporary) {
+  int fd = -1;
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    std::error_code error;
+    if (const auto folder = path.parent_path(); !folder.empty())
+      std::filesystem::create_directories(folder, error);
+    fd = open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd >= 0 || errno != ENOENT) break;
+  }
+  return fd;
+}
+
 }  // namespace
 
 PartialFile::PartialFile(const std::string& path) : path_(path), temporary_(temporary_name(path)) {
@@ -32,10 +45,9 @@ PartialFile::PartialFile(const std::string& path) : path_(path), temporary_(temp
   if (const auto there = std::filesystem::status(path, error);
       std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
     throw WorldError("cannot_write_file", fmt::format("cannot write {}: it is not a regular file", path));
-  if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty())
-    std::filesystem::create_directories(folder, error);
+  folders_.above(path);
   remember_temporary_file(temporary_);
-  const int fd = open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const int fd = open_with_folder(path, temporary_);
   if (fd >= 0) file_ = fdopen(fd, "w+b");
   if (file_ == nullptr) {
     const int why = errno;
@@ -69,6 +81,7 @@ void PartialFile::commit() {
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(errno);
   forget_temporary_file(temporary_);
   temporary_.clear();
+  folders_.keep();
 }
 
 void PartialFile::remember() {

@@ -141,11 +141,10 @@ TEST(CliEnds, InspectThatIsInterruptedSaysSo) {
 
 TEST(CliEnds, ATerminalThatGoesAwayLeavesNoTemporaryFile) {
   const TempFolder folder;
-  const auto r = interrupted({"run", teapot, "--out", folder.file("out")}, SIGHUP, folder);
+  const auto begun = [&] { return std::filesystem::exists(folder.file("out")); };
+  const auto r = interrupted({"run", teapot, "--out", folder.file("out")}, SIGHUP, folder, 1, begun);
   EXPECT_EQ(r.code, 130) << r.err;
-  if (std::filesystem::exists(folder.file("out"))) {
-    EXPECT_TRUE(std::filesystem::is_empty(folder.file("out")));
-  }
+  EXPECT_FALSE(std::filesystem::exists(folder.file("out"))) << "nor the folder that was made for it";
 }
 
 // The second signal ends the process where it stands, in the middle of a file.
@@ -155,8 +154,9 @@ TEST(CliEnds, ASecondInterruptLeavesNoTemporaryFile) {
   const auto begun = [&] { return std::filesystem::exists(out) && !std::filesystem::is_empty(out); };
   const auto r = interrupted({"run", teapot, "--out", out}, SIGINT, folder, 5, begun);
   EXPECT_EQ(r.code, 130) << r.err;
-  ASSERT_TRUE(std::filesystem::exists(out)) << r.err;
-  EXPECT_TRUE(std::filesystem::is_empty(out));
+  if (std::filesystem::exists(out)) {
+    EXPECT_TRUE(std::filesystem::is_empty(out));
+  }
 }
 
 std::string sphere(const std::string& file, int segments, int rings) {

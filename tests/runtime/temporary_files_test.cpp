@@ -52,6 +52,23 @@ TEST(TemporaryFiles, OfPartialFilesAreThoseThatAreNotFinished) {
   EXPECT_TRUE(is_empty(folder.path()));
 }
 
+TEST(PartialFiles, LeaveNoEmptyFolderOfTheirOwn) {
+  const test::TempFolder folder;
+  std::filesystem::create_directory(folder.file("old"));
+  {
+    PartialFile a(folder.file("old/new/deep/a")), b(folder.file("old/new/b"));
+    a.add("a");
+    EXPECT_TRUE(exists(folder.file("old/new/deep")));
+  }
+  EXPECT_TRUE(is_empty(folder.file("old"))) << "what was there before stays";
+  {
+    PartialFile a(folder.file("new/deep/a")), b(folder.file("new/b"));
+    b.commit();
+  }
+  EXPECT_FALSE(exists(folder.file("new/deep")));
+  EXPECT_TRUE(exists(folder.file("new/b")));
+}
+
 TEST(TemporaryFiles, OfTheCacheAreThoseThatAreNotFinished) {
   const test::TempFolder folder;
   CacheFileWriter finished(folder.file("part"), CacheContent::notes);
