@@ -216,6 +216,12 @@ int fail(const Diagnostics& problems, bool json, Exit exit) {
   return exit;
 }
 
+int fail(const Diagnostic& problem, bool json) {
+  Diagnostics problems;
+  problems.add(problem);
+  return fail(problems, json);
+}
+
 int exit_code(const RunResult& result) {
   switch (result.end) {
     case RunResult::End::done: return done;

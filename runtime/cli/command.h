@@ -106,6 +106,7 @@ void report(const Diagnostics&);      // as text on stderr
 Json with_diagnostics(Json object, const Diagnostics&);
 // Prints the problems, as JSON on stdout or as text on stderr, and gives `exit`.
 int fail(const Diagnostics&, bool json, Exit exit = bad_input);
+int fail(const Diagnostic&, bool json);
 int exit_code(const RunResult&);
 // `code`, or 3 with a message where a part of what was printed is lost. A reader that went away has what it
 // wants: that is no failure.

@@ -6,6 +6,7 @@
 #include "runtime/cli/command.h"
 #include "runtime/cli/inspect_text.h"
 #include "runtime/core/text.h"
+#include "runtime/graph/own_files.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -151,6 +152,7 @@ int inspect(const Arguments& args, bool json) {
   if (!graph) return bad_input;
   const auto port = port_of(*graph, args.port, problems);
   if (!port) return fail(problems, json);
+  if (const auto d = overwriting(own_files(*graph), args.save, "--save")) return fail(*d, json);
   RunOptions options;
   apply(args.run, options);
   options.cancel = &cancel_flag();

@@ -4,6 +4,7 @@
 #include "runtime/app/files.h"
 #include "runtime/cli/command.h"
 #include "runtime/core/text.h"
+#include "runtime/graph/own_files.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,6 +23,7 @@ int report_run(const Arguments& args, bool json) {
   Session session;
   const auto graph = load_or_report(session, args.graph, json, load_options(args.graph));
   if (!graph) return bad_input;
+  if (const auto d = overwriting(own_files(*graph), args.file, "--output")) return fail(*d, json);
   ReportOptions options = args.options;
   options.settings = args.graph.settings;
   if (!args.graph.precision.empty()) options.settings.push_back("precision=" + args.graph.precision);

@@ -5,6 +5,7 @@
 #include "runtime/cli/command.h"
 #include "runtime/cli/progress.h"
 #include "runtime/core/text.h"
+#include "runtime/graph/own_files.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -75,6 +76,7 @@ Json culprit_json(const Culprit& c) {
 
 struct Outcome {
   int code = done;
+  bool began = false;  // a run, whether or not it came to its end
   std::vector<std::string> files;
   Json ports = Json::object();
   Diagnostics problems;
@@ -147,8 +149,10 @@ bool run_frame(Session& session, const Arguments& args, bool keep, std::optional
   apply(args.run, options);
   options.effects = effect_policy(session.registry(), assignments(args.forced), args.skipped, o.problems);
   options.demand = demand_of(*loaded.graph, args.wanted, o.problems);
+  if (auto d = overwriting(own_files(*loaded.graph), args.trace, "--trace")) o.problems.add(std::move(*d));
   if (one_of_many) check_names_of_frames(*loaded.graph, options.demand, o.problems);
   if (o.problems.has_errors()) return o.code = bad_input, false;
+  o.began = true;
   options.out_folder = args.out;
   options.frame = frame;
   options.cancel = &cancel_flag();
@@ -232,7 +236,7 @@ int run(const Arguments& args, bool json) {
   if (outcome.code == done && outcome.cache_differs) outcome.code = check_failed;
   listeners.bar.reset();
   const auto total = std::chrono::steady_clock::now() - began;
-  if (listeners.trace) write_text(args.trace, listeners.trace->text());
+  if (listeners.trace && outcome.began) write_text(args.trace, listeners.trace->text());
   if (json)
     print_json(outcome, listeners, total);
   else

@@ -1,6 +1,8 @@
 #include "runtime/graph/run.h"
 
 #include "runtime/core/float_environment.h"
+#include "runtime/core/new_folders.h"
+#include "runtime/graph/own_files.h"
 #include "runtime/graph/run_effects.h"
 #include "runtime/graph/run_state.h"
 
@@ -370,6 +372,22 @@ class Runner {
   std::atomic<bool> stopped_{false};
 };
 
+// Outputs whose file is one that the graph was read from.
+Diagnostics overwriting_outputs(const Graph& graph, const RunOptions& options) {
+  Diagnostics problems;
+  if (options.demand.outputs.empty()) return problems;
+  const std::vector<std::string> own = own_files(graph);
+  for (const std::size_t i : options.demand.outputs) {
+    const GraphOutput& output = graph.outputs[i];
+    auto d = overwriting(own, output_path(output, options), fmt::format("output '{}'", output.name));
+    if (!d) continue;
+    d->pointer = child_pointer(output.place.pointer, "file");
+    d->file = output.place.file, d->line = output.place.line, d->column = output.place.column;
+    problems.add(std::move(*d));
+  }
+  return problems;
+}
+
 }  // namespace
 
 std::string_view name_of(CacheVerdict v) {
@@ -391,6 +409,13 @@ std::string output_path(const GraphOutput& output, const RunOptions& options) {
 }
 
 RunResult run_graph(const Graph& graph, const RunOptions& options) {
+  NewFolders folders;
+  if (!options.only_facts) {
+    RunResult refused;
+    refused.problems = overwriting_outputs(graph, options), refused.end = End::failed;
+    if (refused.problems.has_errors()) return refused;
+    for (const std::size_t i : options.demand.outputs) folders.above(output_path(graph.outputs[i], options));
+  }
   const int threads = options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency();
   // More threads than processors are allowed: results do not depend on it, and tests show that.
   const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
@@ -399,7 +424,9 @@ RunResult run_graph(const Graph& graph, const RunOptions& options) {
   constexpr std::uint64_t idle = std::uint64_t{256} << 20;
   keep_idle_pages(options.memory == 0 ? idle : std::min(idle, options.memory / 32));
   tbb::task_arena arena(threads);
-  return arena.execute([&] { return Runner(graph, options).run(); });
+  RunResult result = arena.execute([&] { return Runner(graph, options).run(); });
+  if (result.end == End::done) folders.keep();
+  return result;
 }
 
 }  // namespace frustum

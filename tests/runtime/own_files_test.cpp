@@ -1,0 +1,115 @@
+// Nothing that is made from a graph takes the place of a file that the graph was read from.
+#include "runtime/graph/own_files.h"
+
+#include "runtime/app/files.h"
+#include "tests/support/process.h"
+#include "tests/support/temp_file.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+
+namespace frustum {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::frustum;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr std::string_view inner_text = R"({ "format": "frustum.graph/1",
+  "nodes": { "box": { "type": "mesh.box" } }, "outputs": { "mesh": { "from": "box" } } })";
+constexpr std::string_view outer_text = R"({ "format": "frustum.graph/1",
+  "nodes": { "made": { "type": "graph", "file": "parts/inner.json" } },
+  "outputs": { "first": { "from": "made.mesh", "file": "new/box.ply" },
+               "table": { "from": "made.mesh", "file": "FILE" } } })";
+
+// A graph and one that it uses, with a second output to `file`.
+struct Graphs {
+  explicit Graphs(const std::string& file = "table.json") : text(outer_text) {
+    fs::create_directory(folder.file("parts"));
+    inner = folder.write("parts/inner.json", inner_text);
+    text.replace(text.find("FILE"), 4, file);
+    outer = folder.write("outer.json", text);
+  }
+  void expect_untouched() const {
+    EXPECT_EQ(read_text(outer), text);
+    EXPECT_EQ(read_text(inner), inner_text);
+  }
+  test::TempFolder folder;
+  std::string text, inner, outer;
+};
+
+TEST(OwnFiles, OptionsThatNameOneAreRefused) {
+  const Graphs g;
+  fs::create_symlink(g.outer, g.folder.file("other_name.json"));
+  const std::string out = g.folder.file("out");
+  for (const std::string& file :
+       {g.outer, g.inner, g.folder.file("parts/../outer.json"), g.folder.file("other_name.json")})
+    for (const std::vector<std::string>& command :
+         std::vector<std::vector<std::string>>{{"report", g.outer, "-o", file},
+                                               {"inspect", g.outer, "made/box", "--save", file},
+                                               {"run", g.outer, "--out", out, "--trace", file}}) {
+      const auto r = frustum(command);
+      EXPECT_EQ(r.code, 2) << testing::PrintToString(command);
+      EXPECT_THAT(r.err, AllOf(HasSubstr("error[overwrites_graph]"),
+                               HasSubstr(fs::equivalent(file, g.inner) ? "inner.json" : "outer.json")));
+      EXPECT_FALSE(fs::exists(out)) << "nothing ran";
+      g.expect_untouched();
+    }
+}
+
+TEST(OwnFiles, OutputsThatAreOneAreRefused) {
+  for (const std::string file : {"outer.json", "parts/inner.json"}) {
+    const Graphs g(file);
+    const auto r = frustum({"run", "outer.json", "--out", ".", "--json"}, g.folder.path());
+    EXPECT_EQ(r.code, 2) << file;
+    const json d = json::parse(r.out)["diagnostics"];
+    ASSERT_EQ(d.size(), 1u) << d;
+    EXPECT_EQ(d[0]["code"], "overwrites_graph");
+    EXPECT_EQ(d[0]["pointer"], "/outputs/table/file");
+    EXPECT_EQ(d[0]["line"], 4);
+    g.expect_untouched();
+    EXPECT_FALSE(fs::exists(g.folder.file("new"))) << "nothing ran";
+    EXPECT_EQ(frustum({"run", "outer.json", "--out", ".", "--want", "first"}, g.folder.path()).code, 0);
+    EXPECT_TRUE(fs::exists(g.folder.file("new/box.ply")));
+  }
+}
+
+TEST(OwnFiles, OtherFilesAreWrittenOver) {
+  const Graphs g;
+  for (int i = 0; i < 2; ++i) {
+    const auto r =
+        frustum({"run", g.outer, "--out", g.folder.path(), "--trace", g.folder.file("trace.json")});
+    EXPECT_EQ(r.code, 0) << r.err;
+    EXPECT_EQ(frustum({"report", g.outer, "-o", g.folder.file("page.html")}).code, 0);
+  }
+  g.expect_untouched();
+}
+
+TEST(OwnFiles, AGraphThatCannotBeReadIsNoTrace) {
+  const test::TempFolder folder;
+  const auto bad = folder.write("bad.json", "{");
+  EXPECT_EQ(frustum({"run", bad, "--trace", bad}).code, 2);
+  EXPECT_EQ(read_text(bad), "{");
+}
+
+TEST(OwnFiles, ARunThatFailsLeavesNoEmptyFolder) {
+  const test::TempFolder folder;
+  const auto graph = folder.write("g.json", R"({ "format": "frustum.graph/1",
+    "nodes": { "box": { "type": "mesh.box" }, "camera": { "type": "scene.camera" },
+               "eye": { "type": "project.view", "in": { "mesh": "box", "camera": "camera" } },
+               "clip": { "type": "project.perspective", "in": { "mesh": "eye", "camera": "camera" } } },
+    "outputs": { "o": { "from": "clip", "file": "a/b/clip.ply" } } })");
+  const auto r = frustum({"run", graph, "--out", folder.file("out")});
+  EXPECT_EQ(r.code, 2) << r.err;
+  EXPECT_THAT(r.err, HasSubstr("format_cannot_hold"));
+  EXPECT_FALSE(fs::exists(folder.file("out")));
+  EXPECT_EQ(frustum({"inspect", graph, "clip", "--save", folder.file("deep/er/clip.ply")}).code, 2);
+  EXPECT_FALSE(fs::exists(folder.file("deep")));
+}
+
+}  // namespace
+}  // namespace frustum
