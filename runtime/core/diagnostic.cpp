@@ -123,6 +123,16 @@ bool is_near(std::string_view name, std::string_view known, std::size_t count) {
   return 2 * count < std::max(name.size(), known.size()) - same;
 }
 
+// What somebody meant who stopped writing early, proposed where no name is near: the shortest name, of those the first; null where there is none.
+// One or two letters after the scope are too few to tell.
+const std::string* shortest_beginning_with(std::string_view name, std::span<const std::string> known) {
+  const std::string* found = nullptr;
+  if (name.size() - same_scope(name, name) < 3) return found;
+  for (const std::string& k : known)
+    if (k.starts_with(name) && (found == nullptr || k.size() < found->size())) found = &k;
+  return found;
+}
+
 }  // namespace
 
 bool Diagnostics::has_errors() const {
@@ -197,6 +207,7 @@ std::vector<std::string> nearest_names(std::string_view name, std::span<const st
   std::vector<std::string> out;
   for (const auto& [n, k] : near)
     if (n <= near.front().first + 1) out.push_back(*k);  // beside a near name, far ones only distract
+  if (const std::string* k = out.empty() ? shortest_beginning_with(name, known) : nullptr) out.push_back(*k);
   return out;
 }
 
