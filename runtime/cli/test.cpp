@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 
@@ -148,6 +149,13 @@ void add_selection(CLI::App& c, Arguments& args) {
       ->type_name("I/N");
 }
 
+// CLI::PositiveNumber prints the greatest double as what is allowed, in 309 digits.
+std::string above_zero(const std::string& text) {
+  double value = 0;
+  if (CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value)) return {};
+  return fmt::format("must be above 0, not {}", text);
+}
+
 void add_running(CLI::App& c, Arguments& args) {
   c.add_option("-j,--jobs", args.options.jobs, "Cases at a time; 0 is one a processor.")
       ->check(quiet(CLI::Range(0, 1024)))
@@ -157,7 +165,7 @@ void add_running(CLI::App& c, Arguments& args) {
       ->type_name("N");
   c.add_option("--timeout", args.options.timeout,
                "Seconds after which a case that says nothing else is ended.")
-      ->check(quiet(CLI::PositiveNumber))
+      ->check(quiet(CLI::Validator(above_zero, "")))
       ->type_name("SECONDS");
   c.add_option("--retry", args.options.retry,
                "Further attempts of a case that does not pass; if one does, it is flaky.")

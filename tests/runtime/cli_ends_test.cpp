@@ -360,5 +360,15 @@ TEST(CliEnds, FamiliesVersionsAndHelpAreFound) {
     EXPECT_EQ(frustum(bad).code, 2) << testing::PrintToString(bad);
 }
 
+TEST(CliEnds, ATimeoutIsAboveZero) {
+  const std::string suite = root + "/tests/suites/gallery.json";
+  for (const std::string wrong : {"-1", "0", "nan", "inf", "soon"}) {
+    const auto r = frustum({"test", suite, "--timeout", wrong});
+    EXPECT_EQ(r.code, 2) << wrong;
+    EXPECT_THAT(r.err, HasSubstr("must be above 0, not " + wrong));
+    EXPECT_LT(r.err.size(), 200u) << "no digits of the greatest double";
+  }
+}
+
 }  // namespace
 }  // namespace frustum

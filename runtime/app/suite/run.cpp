@@ -145,7 +145,8 @@ class SuiteRun {
   double timeout_of(const Item& item) const { return item.suite_case->timeout.value_or(options_.timeout); }
 
   void start(IsolatedProcesses& processes, std::size_t i) {
-    const std::chrono::duration<double> timeout(timeout_of(items_[i]));
+    constexpr double longest = 1e9;  // 30 years: nanoseconds of them fit into 64 bits, and added to now too
+    const std::chrono::duration<double> timeout(std::min(timeout_of(items_[i]), longest));
     processes.start(i, std::chrono::duration_cast<std::chrono::nanoseconds>(timeout), [this, i] {
       return case_to_json(judged(i)).dump(-1, ' ', false, Json::error_handler_t::replace);
     });
