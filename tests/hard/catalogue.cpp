@@ -109,7 +109,7 @@ const stability::CatalogueRow catalogue_rows[] = {
     {"ZBF-07", depth_stage, "mean of a fragment list", false},
     {"ZBF-08", depth_stage, "NaN and -0 depth", true},
     {"ZBF-09", depth_stage, "unpremultiply at alpha~0", false},
-    {"ZBF-10", depth_stage, "unorm24/16 conversion", false, "depth in integers"},
+    {"ZBF-10", depth_stage, "unorm24/16 conversion", false},
     {"ZBF-11", depth_stage, "resolve of ties between fragments of equal depth", true},
     // BSP
     {"BSP-02", bsp_stage, "drift after thousands of splits", true, "the BSP tree"},
@@ -124,10 +124,10 @@ const stability::CatalogueRow catalogue_rows[] = {
     {"DST-04", depth_sort_stage, "interpenetration", false, "the depth sort"},
     {"DST-05", depth_sort_stage, "equal-z stability", false, "the depth sort"},
     // Scanline
-    {"SCN-02", scanline_stage, "vertex on scanline, local extrema", false, "the scanline renderer"},
-    {"SCN-03", scanline_stage, "horizontal edges", false, "the scanline renderer"},
-    {"SCN-04", scanline_stage, "spans crossing inside a line", false, "the scanline renderer"},
-    {"SCN-05", scanline_stage, "scanline == z-buffer image", true, "the scanline renderer"},
+    {"SCN-02", scanline_stage, "vertex on scanline, local extrema", false},
+    {"SCN-03", scanline_stage, "horizontal edges", false},
+    {"SCN-04", scanline_stage, "spans crossing inside a line", false},
+    {"SCN-05", scanline_stage, "scanline == z-buffer image", true},
     // Shading
     {"SHD-01", shading_stage, "interpolated normal vanishes", true},
     {"SHD-03", shading_stage, "half vector L+V=0", false},

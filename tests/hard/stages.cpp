@@ -5,8 +5,9 @@ namespace {
 
 std::vector<HardCase> all_cases() {
   std::vector<HardCase> all;
-  for (const auto stage : {foundations, transforms, quaternions, projection, clipping, culling, lines,
-                           triangles, depth, shading, shadows, texture, sampling, colour, runtime}) {
+  for (const auto stage :
+       {foundations, transforms, quaternions, projection, clipping, culling, lines, triangles, depth,
+        scanlines, shading, shadows, texture, sampling, colour, runtime}) {
     const auto more = stage();
     all.insert(all.end(), more.begin(), more.end());
   }
