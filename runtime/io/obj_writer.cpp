@@ -1,6 +1,6 @@
 #include "nodes/kernels/transfer.h"
-#include "runtime/io/distinct_rows.h"
 #include "runtime/io/mesh_writers.h"
+#include "runtime/io/vertex_split.h"
 
 #include <fmt/format.h>
 
@@ -45,30 +45,31 @@ void add_numbers(Lines& lines, const Column& c, std::size_t row) {
   }
 }
 
-// The lines of a column, and which of them a corner points at. Readers join corners by these numbers, so values
-// of corners that are equal by bits share one line: a line each would take every triangle apart.
+// The lines of a column, and which of them a corner points at. Readers join corners by these numbers, so corners of
+// one vertex whose values are equal by bits share a line: a line each would take every triangle apart.
 class Lookup {
  public:
-  Lookup(const Column* c, Context& ctx) : column_(c) {
-    if (c != nullptr && c->domain() == Domain::corner) distinct_ = distinct_rows(*c, ctx);
+  Lookup(const Mesh& mesh, std::string_view column, Context& ctx) : column_(mesh.share(column)) {
+    if (column_ != nullptr && column_->domain() == Domain::corner)
+      split_ = split_vertices(mesh, std::span(&column_, 1), ctx);
   }
   explicit operator bool() const { return column_ != nullptr; }
   void add_lines(Lines& lines, std::string_view key) const {
-    const std::size_t count = distinct_ ? distinct_->rows.size() : column_ != nullptr ? column_->rows() : 0;
+    const std::size_t count = split_ ? split_->corners.size() : column_ != nullptr ? column_->rows() : 0;
     for (std::size_t i = 0; i < count; ++i) {
       lines.add("{}", key);
-      add_numbers(lines, *column_, distinct_ ? distinct_->rows[i] : i);
+      add_numbers(lines, *column_, split_ ? split_->corners[i] : i);
       lines.add("\n");
     }
   }
-  // Counted from 1, of a corner (3 f + k) at a vertex.
-  std::size_t line(std::size_t corner, std::size_t vertex) const {
-    return 1 + (distinct_ ? distinct_->index[corner] : vertex);
+  // Counted from 1, of corner k of face f, which is at a vertex.
+  std::size_t line(std::size_t f, glm::length_t k, std::size_t vertex) const {
+    return 1 + (split_ ? split_->triangles->values<glm::uvec3>()[f][k] : vertex);
   }
 
  private:
-  const Column* column_;
-  std::optional<DistinctRows> distinct_;
+  Ref<Column> column_;
+  std::optional<VertexSplit> split_;
 };
 
 void add_positions(Lines& lines, const Mesh& mesh, const Column* color) {
@@ -101,11 +102,11 @@ void add_faces(Lines& lines, const Mesh& mesh, const Lookup& uv, const Lookup& n
       now = m;
     }
     lines.add("f");
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t v = triangles[f][static_cast<glm::length_t>(k)];
+    for (glm::length_t k = 0; k < 3; ++k) {
+      const std::size_t v = triangles[f][k];
       lines.add(" {}", v + 1);
-      if (uv) lines.add("/{}", uv.line(3 * f + k, v));
-      if (normal) lines.add("{}{}", uv ? "/" : "//", normal.line(3 * f + k, v));
+      if (uv) lines.add("/{}", uv.line(f, k, v));
+      if (normal) lines.add("{}{}", uv ? "/" : "//", normal.line(f, k, v));
     }
     lines.add("\n");
   }
@@ -114,8 +115,7 @@ void add_faces(Lines& lines, const Mesh& mesh, const Lookup& uv, const Lookup& n
 }  // namespace
 
 void write_obj(const Mesh& mesh, const SaveRequest& request, PartialFile& to, Context& ctx) {
-  const Column *uv = mesh.find("uv"), *normal = mesh.find("normal"), *color = mesh.find("color"),
-               *material = mesh.materials ? mesh.find("material") : nullptr;
+  const Column *color = mesh.find("color"), *material = mesh.materials ? mesh.find("material") : nullptr;
   if (color != nullptr && color->domain() != Domain::vertex) {
     warn_left_out(request, "OBJ", "colours of corners");
     color = nullptr;
@@ -129,7 +129,7 @@ void write_obj(const Mesh& mesh, const SaveRequest& request, PartialFile& to, Co
   Lines lines(to, ctx);
   for (const auto& [key, value] : request.metadata) lines.add("# {} {}\n", key, line_name(value));
   add_positions(lines, mesh, color);
-  const Lookup uv_lines(uv, ctx), normal_lines(normal, ctx);
+  const Lookup uv_lines(mesh, "uv", ctx), normal_lines(mesh, "normal", ctx);
   uv_lines.add_lines(lines, "vt");
   normal_lines.add_lines(lines, "vn");
   add_faces(lines, mesh, uv_lines, normal_lines, material);
