@@ -60,14 +60,26 @@ std::optional<Graph> load_or_report(const Session& session, const GraphArguments
   return std::move(loaded.graph);
 }
 
+void add_memory_argument(CLI::App& app, std::string& memory) {
+  app.add_option("--memory", memory,
+                 "Most bytes of buffers that may be live at once; a run that needs more is refused, exit 2.")
+      ->type_name("SIZE");
+}
+
+std::uint64_t memory_limit(const std::string& memory) {
+  if (memory.empty()) return 0;
+  const auto bytes = parse_bytes(memory);
+  if (!bytes || *bytes == 0)
+    throw UsageError(fmt::format("--memory {}: expected a size such as 512M or 2G", memory));
+  return *bytes;
+}
+
 void add_run_arguments(CLI::App& app, RunArguments& args) {
   app.add_option("--threads", args.threads,
                  "Threads; 0 takes every processor. The bytes do not depend on it.")
       ->check(quiet(CLI::Range(0, 4096)))
       ->type_name("N");
-  app.add_option("--memory", args.memory,
-                 "Most bytes of buffers that may be live at once; a run that needs more is refused, exit 2.")
-      ->type_name("SIZE");
+  add_memory_argument(app, args.memory);
   app.add_option("--region", args.region, "Only these pixels; the same bytes as that part of the whole.")
       ->type_name("X,Y,W,H");
   app.add_option("--tile", args.tile,
@@ -85,12 +97,7 @@ void apply(const RunArguments& args, RunOptions& options) {
   options.threads = args.threads;
   options.tile_edge = args.tile;
   options.fuse = !args.no_fuse;
-  if (!args.memory.empty()) {
-    const auto bytes = parse_bytes(args.memory);
-    if (!bytes || *bytes == 0)
-      throw UsageError(fmt::format("--memory {}: expected a size such as 512M or 2G", args.memory));
-    options.memory = *bytes;
-  }
+  options.memory = memory_limit(args.memory);
   if (!args.region.empty()) {
     const auto v = integers("--region", args.region, 4);
     if (v[2] <= 0 || v[3] <= 0)

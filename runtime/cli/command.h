@@ -8,6 +8,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -74,6 +75,8 @@ struct RunArguments {
   std::string region;
 };
 void add_run_arguments(CLI::App&, RunArguments&);
+void add_memory_argument(CLI::App&, std::string& memory);  // --memory alone
+std::uint64_t memory_limit(const std::string& memory);     // 0: none was given. Throws UsageError
 // Throws UsageError. A --simd that the processor lacks is WorldError("unsupported_simd").
 void apply(const RunArguments&, RunOptions&);
 

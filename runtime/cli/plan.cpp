@@ -22,6 +22,7 @@ struct Arguments {
   bool no_fuse = false;
   bool prove = false;
   int repeats = 3, threads = 0;
+  std::string memory;
 };
 
 // Where a run that fills no pixel was when most bytes were live, or would have been.
@@ -152,9 +153,12 @@ std::string plan_text(const Graph& graph, const Plan& plan) {
 int show(Session& session, const Arguments& args, const Graph& graph, const Demand& demand, bool json) {
   const Plan made = make_plan(graph, demand, {.fuse = !args.no_fuse});
   PeakMemory memory;
-  const EffectPlan effects = plan_effects(
-      session, graph, demand,
-      {.threads = args.threads, .fuse = !args.no_fuse, .cancel = &cancel_flag(), .observer = &memory});
+  const EffectPlan effects = plan_effects(session, graph, demand,
+                                          {.threads = args.threads,
+                                           .fuse = !args.no_fuse,
+                                           .memory = memory_limit(args.memory),
+                                           .cancel = &cancel_flag(),
+                                           .observer = &memory});
   if (json) {
     Json out = plan_json(graph, made);
     out["memory"] = memory.json(graph, made);
@@ -215,6 +219,8 @@ void add_plan(CLI::App& app, Invocation& chosen) {
   c.add_option("--threads", args->threads, "Threads; 0 takes every processor.")
       ->check(quiet(CLI::Range(0, 4096)))
       ->type_name("N");
+  add_memory_argument(c, args->memory);
+  c.get_option("--memory")->excludes("--prove");
 }
 
 }  // namespace frustum::cli

@@ -192,6 +192,30 @@ TEST(CliPlan, EstimatesThePeakOfMemory) {
 }
 
 // Nodes that read a whole picture are prepared from its frame, whose pixels no plan fills.
+TEST(CliPlan, NamesTheNodeThatAnEffectIsUndecidedFor) {
+  const std::string& graph = stages;
+  const auto whole = frustum({"plan", graph});
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  EXPECT_THAT(whole.out, Not(HasSubstr("could not be made")));
+  const auto none = frustum({"plan", graph, "--memory", "1K"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, HasSubstr("error[memory]"));
+  EXPECT_THAT(none.out,
+              AllOf(HasSubstr("' could not be made"), Not(HasSubstr("do not exist before the run"))));
+  const auto object = json::parse(frustum({"plan", graph, "--memory", "1K", "--json"}).out);
+  std::string node = object["diagnostics"][0]["pointer"];
+  node = node.substr(std::string("/nodes/").size());
+  int undecided = 0;
+  for (const json& e : object["effects"])
+    if (e["verdict"] == "undecided") {
+      EXPECT_EQ(e["why"], "'" + node + "' could not be made");
+      ++undecided;
+    }
+  EXPECT_GT(undecided, 0);
+  EXPECT_EQ(frustum({"plan", graph, "--memory", "100G"}).out, whole.out);
+  EXPECT_EQ(frustum({"plan", graph, "--memory", "none"}).code, 2);
+}
+
 TEST(CliPlan, SaysWhatItDoesNotCount) {
   const auto r = frustum({"plan", stages, "--want", "display", "--no-fuse", "--json"});
   ASSERT_EQ(r.code, 0) << r.err;

@@ -62,8 +62,31 @@ const EffectDoc& declared(const NodeType& type, std::string_view effect) {
   return *std::find_if(of_runs.begin(), of_runs.end(), [&](const EffectDoc& d) { return d.name == effect; });
 }
 
-// The effects of one node that runs: those decided, then those that wait for pixels.
-void add_node(const GraphNode& node, const RunResult& facts, double share, std::vector<PlannedEffect>& out) {
+// The node that a problem of a run is told at; null where it is told at an output, or a setting of the graph around it.
+const GraphNode* node_at(const Graph& graph, const Diagnostic& d) {
+  const auto holds = [&](const GraphNode& n) {
+    const std::string& at = n.place.pointer;
+    return n.place.file == d.file && d.pointer.starts_with(at) &&
+           (d.pointer.size() == at.size() || d.pointer[at.size()] == '/');
+  };
+  const auto found = std::find_if(graph.nodes.begin(), graph.nodes.end(), holds);
+  return found == graph.nodes.end() ? nullptr : &*found;
+}
+
+// Why effects are left undecided: of a run that came to its end, those of pixels are; others end at their first error.
+std::string why_undecided(const Graph& graph, const RunResult& facts) {
+  if (facts.end == RunResult::End::done) return "the pixels that it depends on do not exist before the run";
+  if (facts.end == RunResult::End::cancelled) return "the plan was cancelled";
+  for (const Diagnostic& d : facts.problems.list()) {
+    if (d.severity != Severity::error) continue;
+    if (const GraphNode* n = node_at(graph, d)) return fmt::format("'{}' could not be made", n->id);
+  }
+  return "a node could not be made";
+}
+
+// The effects of one node that runs: those decided, then those that are not.
+void add_node(const GraphNode& node, const RunResult& facts, double share, const std::string& undecided,
+              std::vector<PlannedEffect>& out) {
   std::set<std::string, std::less<>> decided;
   for (const NodeVerdict& v : facts.verdicts) {
     if (v.node != node.id) continue;
@@ -71,7 +94,10 @@ void add_node(const GraphNode& node, const RunResult& facts, double share, std::
     out.push_back(planned(node.id, declared(*node.type, v.effect), v.verdict, share));
   }
   for (const EffectDoc& doc : node.type->effects)
-    if (!decided.contains(doc.name)) out.push_back(planned(node.id, doc, std::nullopt));
+    if (!decided.contains(doc.name)) {
+      out.push_back(planned(node.id, doc, std::nullopt));
+      out.back().undecided = undecided;
+    }
 }
 
 std::string amount(std::uint64_t n, std::string_view item) {
@@ -81,7 +107,7 @@ std::string amount(std::uint64_t n, std::string_view item) {
 }
 
 std::vector<std::string> row(const PlannedEffect& e) {
-  std::string why = e.verdict ? e.verdict->why : "the pixels that it depends on do not exist before the run";
+  std::string why = e.verdict ? e.verdict->why : e.undecided;
   if (e.estimate.count() > 0)
     why += fmt::format(" (about {}: {}{})", human_time(e.estimate),
                        e.share < 1 ? fmt::format("{:.0f} % of ", 100 * e.share) : "",
@@ -123,8 +149,9 @@ EffectPlan plan_effects(Session& session, const Graph& graph, const Demand& dema
     if (runs.contains(mesh.node)) options.demand.ports.push_back(mesh);
   EffectPlan made{.effects = {}, .facts = session.run(graph, options, false)};
   const std::vector<double> shares = covered_shares(graph, made.facts);
+  const std::string undecided = why_undecided(graph, made.facts);
   for (const PlannedNode& n : plan.nodes)
-    add_node(graph.nodes[n.node], made.facts, shares[n.node], made.effects);
+    add_node(graph.nodes[n.node], made.facts, shares[n.node], undecided, made.effects);
   for (const std::size_t n : plan.skipped)
     made.effects.push_back(planned(graph.nodes[n].id, effects_of_runs().back(),
                                    off_exact("no path leads from it to anything that is asked for")));
@@ -174,7 +201,7 @@ Json to_json(const std::vector<PlannedEffect>& effects) {
   Json out = Json::array();
   for (const PlannedEffect& e : effects) {
     Json j = {{"node", e.node}, {"effect", e.effect}, {"verdict", name_of_verdict(e.verdict)}};
-    if (e.verdict) j["why"] = e.verdict->why;
+    j["why"] = e.verdict ? e.verdict->why : e.undecided;
     if (e.verdict && e.verdict->items != 0) j["items"] = e.verdict->items;
     if (!e.item.empty()) j["item"] = e.item;
     if (e.share < 1) j["share"] = e.share;

@@ -19,10 +19,11 @@ struct PlannedEffect {
   std::string node, effect;
   std::string doc;                       // what is not done where it is off
   bool shortcut = false;                 // EffectDoc
-  std::optional<Verdict> verdict;        // none: decided once the pixels that it depends on exist
+  std::optional<Verdict> verdict;        // none: not decided
   std::string item = {};                 // what verdict->items counts; empty: not measured
   double share = 1;                      // how many of them show something, at most (covered.h)
   std::chrono::nanoseconds estimate{0};  // items times share times what one took in one thread; 0: not known
+  std::string undecided = {};            // why there is no verdict
 };
 
 struct EffectPlan {
@@ -50,7 +51,7 @@ std::vector<std::string> effect_names(const Registry&);
 EffectPolicy effect_policy(const Registry&, const std::vector<std::string>& forced,
                            const std::vector<std::string>& skipped, Diagnostics& problems);
 
-// [{"node", "effect", "verdict", "why", "items", "item", "estimate_ms", "shortcut", "doc"}]; verdict "undecided".
+// [{"node", "effect", "verdict", "why", "items", "item", "estimate_ms", "shortcut", "doc"}]; verdict "undecided", with its "why" too.
 Json to_json(const std::vector<PlannedEffect>&);
 std::string effects_text(const EffectPlan&);
 
