@@ -25,6 +25,7 @@ std::vector<HardCase> lines();
 std::vector<HardCase> triangles();
 std::vector<HardCase> depth();
 std::vector<HardCase> scanlines();
+std::vector<HardCase> orders();
 std::vector<HardCase> shading();
 std::vector<HardCase> shadows();
 std::vector<HardCase> texture();
