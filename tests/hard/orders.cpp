@@ -251,8 +251,8 @@ std::size_t needless_cuts(const std::vector<FlatFace>& faces) {
 
 void convex_solids(Trial& t) {
   for (std::size_t n = t.samples(200, 5000); n-- > 0;) {
-    // A slanted box whose corners are sums of three sides on the grid, exact in float: its sides are plane. Half of
-    // them have corners one ulp off.
+    // A slanted box whose corners are sums of three sides on the grid, exact in float: its sides are plane.
+    // Half of them have corners one ulp off.
     std::array<vec3, 4> v;
     for (std::size_t k = 0; k < 4; ++k)
       for (glm::length_t i = 0; i < 3; ++i)

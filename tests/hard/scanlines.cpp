@@ -18,8 +18,8 @@ using glm::vec2, glm::vec4;
 using Outline = std::vector<vec2>;  // corners on the grid of 2^-8 px
 constexpr int edge = 48;            // px
 
-// How often the outline runs around each pixel's middle, by the scanner: a triangle of a fan from the first corner
-// counts as it turns.
+// How often the outline runs around each pixel's middle, by the scanner: a triangle of a fan from the first
+// corner counts as it turns.
 std::vector<int> windings(const Outline& p) {
   std::vector<int> out(static_cast<std::size_t>(edge * edge), 0);
   for (std::size_t k = 2; k < p.size(); ++k) {
@@ -33,8 +33,8 @@ std::vector<int> windings(const Outline& p) {
   return out;
 }
 
-// The same in whole numbers: crossings to the left of the middle, which the rule of top and left sides moves to the
-// right by next to nothing and down by nothing at all beside that.
+// The same in whole numbers: crossings to the left of the middle, which the rule of top and left sides moves
+// to the right by next to nothing and down by nothing at all beside that.
 std::vector<int> exact_windings(const Outline& p) {
   std::vector<int> out;
   const auto grid = [](float px) { return static_cast<std::int64_t>(px * 256); };
@@ -56,8 +56,8 @@ std::vector<int> exact_windings(const Outline& p) {
   return out;
 }
 
-// The textbook: where the sides cross a row, from left to right, filled between the first and the second and so on;
-// an odd one floods the rest. Sides hold both their ends.
+// The textbook: where the sides cross a row, from left to right, filled between the first and the second and
+// so on; an odd one floods the rest. Sides hold both their ends.
 std::vector<bool> textbook_fill(const Outline& p, bool without_horizontals) {
   std::vector<bool> out(static_cast<std::size_t>(edge * edge), false);
   for (int row = 0; row < edge; ++row) {

@@ -26,13 +26,13 @@ Picture by_depth_sort(const kernels::ScreenMesh<float>& mesh, int width, int hei
 std::size_t pixels_apart(const Picture& a, const Picture& b);
 bool same_bits(const Picture& a, const Picture& b);
 
-// Corners on the grid of 2^-8 px, at most 2^11 px away; depths in units of 2^-20 in [0, 1]; no side longer than
-// 64 px, no height below 1 px, so that rounding moves no depth by 2^-15.
+// Corners on the grid of 2^-8 px, at most 2^11 px away; depths in units of 2^-20 in [0, 1]; no side longer
+// than 64 px, no height below 1 px, so that rounding moves no depth by 2^-15.
 void add_random_face(ScreenTriangles& mesh, stability::Random& random, int width, int height,
                      std::uint32_t source);
 
-// The nearest source at each pixel's middle, of such faces: exact in 128 bits. `unsure` where a side of a face that
-// could be seen runs through it, or two faces are less than 2^-14 apart.
+// The nearest source at each pixel's middle, of such faces: exact in 128 bits. `unsure` where a side of a
+// face that could be seen runs through it, or two faces are less than 2^-14 apart.
 inline constexpr std::uint32_t unsure = kernels::no_face - 1;
 std::vector<std::uint32_t> seen_by_rays(const ScreenTriangles& mesh, int width, int height);
 std::size_t wrong_pixels(const Picture& picture, const std::vector<std::uint32_t>& rays);
@@ -43,8 +43,8 @@ struct Polygon {
   std::uint32_t source;
 };
 std::vector<Polygon> polygons_of(const ScreenTriangles& mesh);
-// Fuchs, Kedem & Naylor as it is taught, in float: the first polygon divides the others, its plane is that of its
-// first three corners, pieces get new corners. Back to front for the camera.
+// Fuchs, Kedem & Naylor as it is taught, in float: the first polygon divides the others, its plane is that of
+// its first three corners, pieces get new corners. Back to front for the camera.
 std::vector<Polygon> textbook_tree(std::vector<Polygon> polygons);
 // Each over what is there.
 Picture painted(const std::vector<Polygon>& polygons, int width, int height);
