@@ -116,6 +116,19 @@ Mesh with_pieces(const Mesh& mesh, std::span<const std::uint32_t> kept, const cl
   return out;
 }
 
+// What with_pieces takes: every column anew, and the front of face columns twice while they are joined.
+template <class R>
+std::uint64_t bytes_with_pieces(const Mesh& mesh, std::size_t kept, const clip::Pieces<R>& pieces) {
+  std::uint64_t sum = 0;
+  for (const auto& c : mesh.columns) {
+    const std::uint64_t row = static_cast<std::uint64_t>(c->width()) * bytes_of(c->kind());
+    if (c->domain() == Domain::vertex) sum += row * (c->rows() + pieces.position.size());
+    if (c->domain() == Domain::face) sum += row * (2 * kept + pieces.triangle.size());
+    if (c->domain() == Domain::corner) sum += 3 * row * (2 * kept + pieces.triangle.size());
+  }
+  return sum;
+}
+
 clip::Cutting cutting_of(const Inputs& in, const Params& p) {
   return {in.mesh->camera && in.mesh->camera->reversed_z, p.planes == Planes::near_only, p.guard_band};
 }
@@ -154,11 +167,13 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
     };
     const auto kept = among(clip::Verdict::keep);
     if (verdicts.cut == 0) {
+      ctx.claim(bytes_of_faces(*in.mesh, kept.size()));
       result = std::make_shared<Mesh>(select_faces(*in.mesh, kept));
       return;
     }
     const auto pieces = clip::cut_faces<R>(cutting, position, triangle, among(clip::Verdict::cut));
     ctx.poll();
+    ctx.claim(bytes_with_pieces(*in.mesh, kept.size(), pieces));
     const Mesh source = column == in.mesh->share("position") ? *in.mesh : in.mesh->with(column);
     result = std::make_shared<Mesh>(with_pieces<R>(source, kept, pieces));
   });

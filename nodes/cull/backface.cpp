@@ -88,6 +88,7 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
   }
   ctx.count("triangles_culled", in.mesh->faces() - faces.size());
   if (faces.size() == in.mesh->faces()) return {in.mesh};
+  ctx.claim(bytes_of_faces(*in.mesh, faces.size()));
   return {std::make_shared<Mesh>(select_faces(*in.mesh, faces))};
 }
 

@@ -33,10 +33,11 @@ Outputs run(const Inputs& in, const Params&, Context& ctx) {
   ctx.real([&]<class R>() {
     using Clip = glm::vec<4, R>;
     using Ndc = glm::vec<3, R>;
+    ctx.claim(in.mesh->vertices());
     std::vector<std::uint8_t> no_point(in.mesh->vertices());
     std::size_t without = 0;
-    *out =
-        with_positions<Clip, Ndc>(*in.mesh, Space::ndc, [&](std::span<const Clip> clip, std::span<Ndc> ndc) {
+    *out = with_positions<Clip, Ndc>(
+        *in.mesh, Space::ndc, ctx, [&](std::span<const Clip> clip, std::span<Ndc> ndc) {
           without = project::clip_to_ndc<R>(ctx.simulates("perspective_divide"), clip, ndc, no_point);
         });
     if (without > 0) *out = without_unplaced(*out, no_point, ctx);

@@ -34,7 +34,7 @@ Outputs run(const Inputs& in, const Params&, Context& ctx) {
   const Ref<Column> world = in.mesh->share("position");
   ctx.real([&]<class R>() {
     using Point = glm::vec<3, R>;
-    *out = with_positions<Point, Point>(*in.mesh, Space::eye,
+    *out = with_positions<Point, Point>(*in.mesh, Space::eye, ctx,
                                         [&](std::span<const Point> from, std::span<Point> eye) {
                                           project::world_to_eye<R>(view, from, eye);
                                         });

@@ -39,10 +39,11 @@ Outputs run(const Inputs& in, const Params&, Context& ctx) {
   auto out = std::make_shared<Mesh>();
   ctx.real([&]<class R>() {
     using Point = glm::vec<4, R>;
+    ctx.claim(in.mesh->vertices());
     std::vector<std::uint8_t> no_point(in.mesh->vertices());
     std::size_t without = 0;
     *out = with_positions<Point, Point>(
-        *in.mesh, Space::screen, [&](std::span<const Point> clip, std::span<Point> screen) {
+        *in.mesh, Space::screen, ctx, [&](std::span<const Point> clip, std::span<Point> screen) {
           without = project::clip_to_screen<R>(ctx.simulates("perspective_divide"),
                                                kernels::Viewport(resolution), clip, screen, no_point);
         });

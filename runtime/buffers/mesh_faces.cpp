@@ -80,4 +80,15 @@ Mesh select_faces(const Mesh& mesh, std::span<const std::uint32_t> faces) {
   return out;
 }
 
+std::uint64_t bytes_of_faces(const Mesh& mesh, std::size_t faces) {
+  if (faces == mesh.faces()) return 0;
+  std::uint64_t a_face = mesh.find("origin") == nullptr ? sizeof(std::uint32_t) : 0;
+  for (const auto& c : mesh.columns) {
+    const std::uint64_t row = static_cast<std::uint64_t>(c->width()) * bytes_of(c->kind());
+    if (c->domain() == Domain::face) a_face += row;
+    if (c->domain() == Domain::corner) a_face += 3 * row;
+  }
+  return a_face * faces;
+}
+
 }  // namespace frustum

@@ -12,6 +12,8 @@ namespace frustum {
 // vertices that no face uses any more stay. Face column `origin` is made where there was none. All faces in
 // order give the mesh itself. Requires indices < faces. Parallel; the same bytes for any number of threads.
 Mesh select_faces(const Mesh& mesh, std::span<const std::uint32_t> faces);
+// What select_faces takes for so many faces.
+std::uint64_t bytes_of_faces(const Mesh& mesh, std::size_t faces);
 
 // A face or corner column whose element k is that of the old face faces[k]; a corner column moves three rows
 // at a time.

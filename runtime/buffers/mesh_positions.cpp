@@ -13,9 +13,9 @@ Ref<Mesh> in_clip_space(const Mesh& mesh, const Ref<Camera>& camera, const kerne
   ctx.real([&]<class R>() {
     using Eye = glm::vec<3, R>;
     using Clip = glm::vec<4, R>;
-    *out = with_positions<Eye, Clip>(mesh, Space::clip, [&](std::span<const Eye> eye, std::span<Clip> clip) {
-      kernels::map_to_clip<R>(volume, eye, clip);
-    });
+    *out = with_positions<Eye, Clip>(
+        mesh, Space::clip, ctx,
+        [&](std::span<const Eye> eye, std::span<Clip> clip) { kernels::map_to_clip<R>(volume, eye, clip); });
   });
   out->camera = camera;
   ctx.count("vertices", out->vertices());
@@ -33,6 +33,7 @@ Mesh without_unplaced(const Mesh& mesh, std::span<const std::uint8_t> no_point, 
              fmt::format("{} faces were dropped: a corner has w <= 0 or is not finite; "
                          "clip.homogeneous before this node keeps their visible part",
                          dropped));
+  ctx.claim(bytes_of_faces(mesh, faces.size()));
   return select_faces(mesh, faces);
 }
 

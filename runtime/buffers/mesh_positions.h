@@ -11,10 +11,12 @@
 namespace frustum {
 
 // The mesh with new positions: map(from, to) gets the old ones as From and fills as many To. All other
-// columns are shared. Throws NodeError("narrowing") for double positions in a single precision From.
+// columns are shared. Claims their memory before it takes it. Throws NodeError("narrowing") for double positions in a
+// single precision From.
 template <class From, class To, class Map>
-Mesh with_positions(const Mesh& mesh, Space space, const Map& map) {
+Mesh with_positions(const Mesh& mesh, Space space, Context& ctx, const Map& map) {
   const auto from = mesh.real<typename From::value_type>("position");
+  ctx.claim(from->rows() * sizeof(To));
   auto to = Column::make<To>("position", Domain::vertex, from->rows(), space);
   map(from->template values<From>(), to->template values<To>());
   return mesh.with(std::move(to));

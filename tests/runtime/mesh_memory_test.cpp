@@ -1,6 +1,10 @@
 // Nodes that make many rows of little ask for their memory before they take it.
+#include "nodes/clip.h"
+#include "nodes/cull.h"
 #include "nodes/io.h"
 #include "nodes/mesh.h"
+#include "nodes/project.h"
+#include "nodes/scene.h"
 #include "nodes/surface.h"
 #include "runtime/buffers/mesh.h"
 #include "tests/support/run_node.h"
@@ -9,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -102,6 +107,40 @@ TEST(MeshMemory, ClaimsAreOfTheSizeOfWhatIsMade) {
   const auto [claimed, bytes] = made(nodes::surface_tessellate(), Json::object(), {{teapot()}});
   EXPECT_GE(claimed, bytes);
   EXPECT_LE(claimed, 3 * bytes);
+}
+
+// Columns that are shared with the input cost nothing.
+std::uint64_t bytes_of_new_columns(const Mesh& before, const Mesh& after) {
+  std::uint64_t sum = 0;
+  for (const auto& c : after.columns) {
+    const bool shared = std::any_of(before.columns.begin(), before.columns.end(),
+                                    [&](const auto& old) { return old->data() == c->data(); });
+    sum += shared ? 0 : c->bytes();
+  }
+  return sum;
+}
+
+TEST(MeshMemory, OnTheWayToTheScreenNothingIsTakenThatWasNotAskedFor) {
+  // The ball passes through the near plane and the sides of the view.
+  const Buffer camera =
+      test::run_node(nodes::scene_camera(), {{"eye", {0, 0, 3}}, {"target", {0.5, 0, 0}}, {"near", 2.5}})[0];
+  Buffer mesh = ball();
+  struct Step {
+    NodeType type;
+    bool sees;  // whether it takes the camera
+  };
+  for (const Step& step : {Step{nodes::project_view(), true}, Step{nodes::project_perspective(), true},
+                           Step{nodes::cull_frustum(), false}, Step{nodes::clip_homogeneous(), false},
+                           Step{nodes::cull_backface(), false}, Step{nodes::project_viewport(), true}}) {
+    Context ctx;
+    test::NodeInputs in{{mesh}};
+    if (step.sees) in.push_back({camera});
+    const Buffer out = test::run_node(step.type, Json::object(), in, &ctx)[0];
+    const std::uint64_t made = bytes_of_new_columns(*mesh.as<Mesh>(), *out.as<Mesh>());
+    EXPECT_GT(made, 0u) << step.type.name;
+    EXPECT_GE(ctx.claimed(), made) << step.type.name;
+    mesh = out;
+  }
 }
 
 }  // namespace
