@@ -83,15 +83,15 @@ Json subgraph_schema() {
 
 Json outputs_schema() {
   const Json source = text("A port: NODE.PORT, or NODE for its first output.");
-  Json out =
-      object({{"from", source},
-              {"layers",
-               {{"type", "object"},
-                {"additionalProperties", source},
-                {"description", "Layers of one file by name; \"\" is the main one."}}},
-              {"file", text("Relative to --out; {frame} is the number of the frame.")},
-              {"bits", {{"type", "integer"}, {"enum", {8, 16, 32}}, {"description", "Bits of a channel."}}},
-              {"compression", text("A compression of the format: zip or piz for .exr, quality:90 for .jpg.")}});
+  Json out = object(
+      {{"from", source},
+       {"layers",
+        {{"type", "object"},
+         {"additionalProperties", source},
+         {"description", "Layers of one file by name; \"\" is the main one."}}},
+       {"file", text("Relative to --out; {frame} is the number of the frame.")},
+       {"bits", {{"type", "integer"}, {"enum", {8, 16, 32}}, {"description", "Bits of a channel."}}},
+       {"compression", text("A compression of the format: zip or piz for .exr, quality:90 for .jpg.")}});
   return {{"type", "object"},
           {"propertyNames", {{"pattern", identifier}}},
           {"additionalProperties", std::move(out)}};

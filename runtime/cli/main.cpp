@@ -116,8 +116,8 @@ int main_(int argc, char** argv) {
       "\nExample:\n  frustum run graphs/gallery/teapot.json\n\n"
       "Exit codes: 0 done, 1 a check did not hold, 2 the input is wrong, 3 the world failed, 130 cancelled.");
   Invocation chosen;
-  for (const auto add : {add_run, add_check, add_plan, add_inspect, add_report, add_nodes, add_diff, add_sweep,
-                         add_diverge, add_stability, add_test, add_new, add_catalog})
+  for (const auto add : {add_run, add_check, add_plan, add_inspect, add_report, add_nodes, add_diff,
+                         add_sweep, add_diverge, add_stability, add_test, add_new, add_catalog})
     add(app, chosen);
   // Whether errors of the command line itself are to be JSON has to be known before it could be read.
   for (int i = 1; i < argc; ++i) chosen.json |= std::strcmp(argv[i], "--json") == 0;

@@ -32,12 +32,16 @@ void inspect_row(const Tile& t, int plane, int sample, int y, Health& h) {
     if (std::isfinite(row[i])) continue;
     if (h.finite()) {
       h.pixel = {t.rect().x0 + i, y};
-      h.first = fmt::format("plane {}, sample {}, pixel {},{}", t.frame().planes[static_cast<std::size_t>(plane)].name,
-                            sample, t.rect().x0 + i, y);
+      h.first =
+          fmt::format("plane {}, sample {}, pixel {},{}",
+                      t.frame().planes[static_cast<std::size_t>(plane)].name, sample, t.rect().x0 + i, y);
     }
-    if (std::isnan(row[i])) ++h.nan;
-    else if (row[i] > 0) ++h.positive_infinity;
-    else ++h.negative_infinity;
+    if (std::isnan(row[i]))
+      ++h.nan;
+    else if (row[i] > 0)
+      ++h.positive_infinity;
+    else
+      ++h.negative_infinity;
   }
 }
 
@@ -51,8 +55,10 @@ Health health_of(const Tile& t) {
     if (!t.has(p) || kind == PlaneKind::u32) continue;
     for (int s = 0; s < t.samples(); ++s)
       for (int y = t.rect().y0; y < t.rect().y1; ++y) {
-        if (kind == PlaneKind::f32) inspect_row<float>(t, p, s, y, h);
-        else inspect_row<double>(t, p, s, y, h);
+        if (kind == PlaneKind::f32)
+          inspect_row<float>(t, p, s, y, h);
+        else
+          inspect_row<double>(t, p, s, y, h);
       }
   }
   return h;

@@ -29,13 +29,15 @@ std::string shown(const Range& r, std::string_view unit) {
 }
 
 void wrong_type(ParamReader& reader, const std::string& expected, const Json& got) {
-  reader.problem("wrong_type", fmt::format("expected {}, got {}", expected, shown(got)), expected, shown(got));
+  reader.problem("wrong_type", fmt::format("expected {}, got {}", expected, shown(got)), expected,
+                 shown(got));
 }
 
 bool in_range(double v, const ParamOptions& options, const Json& j, ParamReader& reader) {
   if (options.range.holds(v)) return true;
   const std::string expected = shown(options.range, options.unit);
-  reader.problem("out_of_range", fmt::format("{} is out of range: expected {}", shown(j), expected), expected, shown(j));
+  reader.problem("out_of_range", fmt::format("{} is out of range: expected {}", shown(j), expected), expected,
+                 shown(j));
   return false;
 }
 
@@ -94,8 +96,9 @@ void read_color(const Json& j, Color& out, const ParamOptions& options, ParamRea
   const auto space = j["space"].get<std::string>();
   if (!reader.to_linear() || !reader.to_linear()(space, rgb)) {
     reader.inside("space", [&] {
-      reader.problem("unknown_color_space", fmt::format("'{}' is not a colour space of the configuration", space),
-                     "a colour space", space);
+      reader.problem("unknown_color_space",
+                     fmt::format("'{}' is not a colour space of the configuration", space), "a colour space",
+                     space);
     });
     return;
   }
@@ -121,7 +124,10 @@ void read_matrix(const Json& j, glm::dmat4& out, const ParamOptions& options, Pa
 }  // namespace
 
 ParamReader::ParamReader(Diagnostics& problems, std::string pointer, std::string folder, ToLinear to_linear)
-    : problems_(problems), pointer_(std::move(pointer)), folder_(std::move(folder)), to_linear_(std::move(to_linear)) {}
+    : problems_(problems),
+      pointer_(std::move(pointer)),
+      folder_(std::move(folder)),
+      to_linear_(std::move(to_linear)) {}
 
 void ParamReader::problem(std::string code, std::string message, std::string expected, std::string got,
                           std::vector<std::string> suggestions) {
@@ -140,7 +146,9 @@ void ParamReader::inside(std::string_view key, const std::function<void()>& body
   pointer_.resize(length);
 }
 
-void ParamReader::inside(std::size_t index, const std::function<void()>& body) { inside(std::to_string(index), body); }
+void ParamReader::inside(std::size_t index, const std::function<void()>& body) {
+  inside(std::to_string(index), body);
+}
 
 namespace detail {
 
@@ -152,23 +160,24 @@ ParamType boolean_type() {
 }
 
 ParamType text_type() {
-  ParamType t = scalar<std::string>(Kind::text, "a text", &Json::is_string,
-                                    [](const Json& j, std::string& out, ParamReader&) { out = j.get<std::string>(); });
+  ParamType t =
+      scalar<std::string>(Kind::text, "a text", &Json::is_string,
+                          [](const Json& j, std::string& out, ParamReader&) { out = j.get<std::string>(); });
   t.write = [](const void* v) { return Json(*static_cast<const std::string*>(v)); };
   return t;
 }
 
 ParamType file_type() {
-  ParamType t = scalar<FilePath>(Kind::file, "a file path", &Json::is_string,
-                                 [](const Json& j, FilePath& out, ParamReader& reader) {
-                                   auto written = j.get<std::string>();
-                                   // The system would take the part before it for the whole name.
-                                   if (written.find('\0') != std::string::npos)
-                                     return reader.problem("bad_path", fmt::format("{} does not name a file", shown(j)),
-                                                           "a file name", shown(j));
-                                   out.written = std::move(written);
-                                   out.resolved = (std::filesystem::path(reader.folder()) / out.written).string();
-                                 });
+  ParamType t = scalar<FilePath>(
+      Kind::file, "a file path", &Json::is_string, [](const Json& j, FilePath& out, ParamReader& reader) {
+        auto written = j.get<std::string>();
+        // The system would take the part before it for the whole name.
+        if (written.find('\0') != std::string::npos)
+          return reader.problem("bad_path", fmt::format("{} does not name a file", shown(j)), "a file name",
+                                shown(j));
+        out.written = std::move(written);
+        out.resolved = (std::filesystem::path(reader.folder()) / out.written).string();
+      });
   t.write = [](const void* v) { return Json(static_cast<const FilePath*>(v)->written); };
   t.files = [](const void* v, const auto& visit) { visit(*static_cast<const FilePath*>(v)); };
   return t;
@@ -187,16 +196,19 @@ ParamType integer_type(IntegerAccess access) {
   ParamType t{.kind = Kind::integer, .name = "an integer"};
   t.read = [access](const Json& j, void* value, const ParamOptions& options, ParamReader& reader) {
     // 4.0 is an integer that was written as a real; 4.5 is not.
-    const bool whole = j.is_number_float() && std::abs(j.get<double>()) < 0x1p53 && j.get<double>() == std::trunc(j.get<double>());
+    const bool whole = j.is_number_float() && std::abs(j.get<double>()) < 0x1p53 &&
+                       j.get<double>() == std::trunc(j.get<double>());
     if (!j.is_number_integer() && !whole) return wrong_type(reader, "an integer", j);
     const double v = j.get<double>();
     if (!in_range(v, options, j, reader)) return;
-    const bool fits = whole                  ? access.store(value, static_cast<std::int64_t>(v))
-                      : j.is_number_unsigned() && j.get<std::uint64_t>() > INT64_MAX ? false
-                                                                                    : access.store(value, j.get<std::int64_t>());
+    const bool fits = whole ? access.store(value, static_cast<std::int64_t>(v))
+                      : j.is_number_unsigned() && j.get<std::uint64_t>() > INT64_MAX
+                          ? false
+                          : access.store(value, j.get<std::int64_t>());
     if (!fits) {
       const std::string expected = fmt::format("{} to {}", access.low, access.high);
-      reader.problem("out_of_range", fmt::format("{} is out of range: expected {}", shown(j), expected), expected, shown(j));
+      reader.problem("out_of_range", fmt::format("{} is out of range: expected {}", shown(j), expected),
+                     expected, shown(j));
     }
   };
   t.write = [access](const void* v) { return Json(access.load(v)); };
@@ -238,8 +250,8 @@ ParamType choice_type(std::vector<std::string> names, ChoiceAccess access) {
     const auto text = j.get<std::string>();
     const auto found = std::find(names.begin(), names.end(), text);
     if (found == names.end())
-      return reader.problem("unknown_choice", fmt::format("'{}' is not one of the choices: {}", text, listed), listed, text,
-                            nearest_names(text, names));
+      return reader.problem("unknown_choice", fmt::format("'{}' is not one of the choices: {}", text, listed),
+                            listed, text, nearest_names(text, names));
     access.store(value, static_cast<std::size_t>(found - names.begin()));
   };
   t.write = [=](const void* v) { return Json(names[access.load(v)]); };
@@ -247,8 +259,8 @@ ParamType choice_type(std::vector<std::string> names, ChoiceAccess access) {
 }
 
 ParamType array_type(const ParamType& element, std::size_t count, ArrayAccess access) {
-  const std::string name =
-      count != 0 ? fmt::format("an array of {}: {} each", count, element.name) : fmt::format("an array: {} each", element.name);
+  const std::string name = count != 0 ? fmt::format("an array of {}: {} each", count, element.name)
+                                      : fmt::format("an array: {} each", element.name);
   ParamType t{.kind = Kind::array, .name = name, .element = &element, .count = count};
   t.read = [=, &element](const Json& j, void* value, const ParamOptions& options, ParamReader& reader) {
     if (!j.is_array() || (count != 0 && j.size() != count)) return wrong_type(reader, name, j);
@@ -259,12 +271,14 @@ ParamType array_type(const ParamType& element, std::size_t count, ArrayAccess ac
   t.write = [=, &element](const void* v) {
     Json out = Json::array();
     // at() serves reading and writing alike; nothing is written through the pointer here.
-    for (std::size_t i = 0; i < access.size(v); ++i) out.push_back(element.write(access.at(const_cast<void*>(v), i)));
+    for (std::size_t i = 0; i < access.size(v); ++i)
+      out.push_back(element.write(access.at(const_cast<void*>(v), i)));
     return out;
   };
   if (element.files)
     t.files = [=, &element](const void* v, const auto& visit) {
-      for (std::size_t i = 0; i < access.size(v); ++i) element.files(access.at(const_cast<void*>(v), i), visit);
+      for (std::size_t i = 0; i < access.size(v); ++i)
+        element.files(access.at(const_cast<void*>(v), i), visit);
     };
   return t;
 }
@@ -311,7 +325,8 @@ void read_record(const ParamType& type, const Json& j, void* value, ParamReader&
     reader.inside(key, [&, &key = key, &item = item] {
       if (found == names.end())
         return reader.problem("unknown_param", fmt::format("'{}' is not a parameter here", key),
-                              fmt::format("one of: {}", fmt::join(names, ", ")), key, nearest_names(key, names));
+                              fmt::format("one of: {}", fmt::join(names, ", ")), key,
+                              nearest_names(key, names));
       const ParamField& f = type.fields[static_cast<std::size_t>(found - names.begin())];
       f.type->read(item, static_cast<char*>(value) + f.offset, f.options, reader);
     });

@@ -17,7 +17,8 @@ std::size_t storage_bytes(const Frame& f) {
               !__builtin_mul_overflow(values, static_cast<std::size_t>(f.samples()), &values);
   for (const Plane& p : f.planes) {
     std::size_t bytes = 0;
-    fits = fits && !__builtin_mul_overflow(values, bytes_of(p.kind), &bytes) && !__builtin_add_overflow(sum, bytes, &sum);
+    fits = fits && !__builtin_mul_overflow(values, bytes_of(p.kind), &bytes) &&
+           !__builtin_add_overflow(sum, bytes, &sum);
   }
   if (!fits) throw WorldError("out_of_memory", "a raster of more than 2^64 bytes");
   return sum;
@@ -41,7 +42,8 @@ struct Raster::Storage {
 
   Storage(Frame f, Contents contents) : frame(std::move(f)), pages(pages_for(frame, contents)) {
     const auto values = static_cast<std::size_t>(padded_row(frame.window.width())) *
-                        static_cast<std::size_t>(frame.window.height()) * static_cast<std::size_t>(frame.samples());
+                        static_cast<std::size_t>(frame.window.height()) *
+                        static_cast<std::size_t>(frame.samples());
     std::byte* next = pages.data();
     for (const Plane& p : frame.planes) {
       planes.push_back(next);
@@ -84,7 +86,9 @@ void copy(const Tile& from, const Tile& to) {
       for (int y = r.y0; y < r.y1; ++y) switch (kind) {
           case PlaneKind::f32: std::memcpy(b.row<float>(p, s, y), a.row<float>(p, s, y), row_bytes); break;
           case PlaneKind::f64: std::memcpy(b.row<double>(p, s, y), a.row<double>(p, s, y), row_bytes); break;
-          case PlaneKind::u32: std::memcpy(b.row<std::uint32_t>(p, s, y), a.row<std::uint32_t>(p, s, y), row_bytes); break;
+          case PlaneKind::u32:
+            std::memcpy(b.row<std::uint32_t>(p, s, y), a.row<std::uint32_t>(p, s, y), row_bytes);
+            break;
         }
   }
 }

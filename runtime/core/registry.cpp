@@ -7,7 +7,8 @@ namespace frustum {
 Registry::Registry(std::vector<NodeType> types) {
   for (NodeType& t : types) {
     std::string name = t.name;
-    if (!types_.emplace(name, std::move(t)).second) throw std::logic_error("two node types are named " + name);
+    if (!types_.emplace(name, std::move(t)).second)
+      throw std::logic_error("two node types are named " + name);
   }
 }
 

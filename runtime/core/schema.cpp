@@ -26,10 +26,12 @@ Json color_schema(const ParamOptions& options) {
   const Json rgb = numbers(3, options);
   Json grey = {{"type", "number"}};
   put_range(grey, options);
-  return {{"oneOf", Json::array({rgb, grey, {{"type", "object"},
-                                             {"properties", {{"space", {{"type", "string"}}}, {"value", rgb}}},
-                                             {"required", Json::array({"space", "value"})},
-                                             {"additionalProperties", false}}})}};
+  return {{"oneOf", Json::array({rgb,
+                                 grey,
+                                 {{"type", "object"},
+                                  {"properties", {{"space", {{"type", "string"}}}, {"value", rgb}}},
+                                  {"required", Json::array({"space", "value"})},
+                                  {"additionalProperties", false}}})}};
 }
 
 Json knob_json(const Knob& knob) {
@@ -68,8 +70,10 @@ Json shape(const ParamType& type, const ParamOptions& options, const void* defau
     case Kind::file: return {{"type", "string"}, {"format", "path"}};
     case Kind::color: return color_schema(options);
     case Kind::choice: return {{"type", "string"}, {"enum", type.choices}};
-    case Kind::matrix: return {{"type", "array"}, {"items", numbers(4, options)}, {"minItems", 4}, {"maxItems", 4}};
-    case Kind::optional: return {{"anyOf", Json::array({shape(*type.element, options, nullptr), {{"type", "null"}}})}};
+    case Kind::matrix:
+      return {{"type", "array"}, {"items", numbers(4, options)}, {"minItems", 4}, {"maxItems", 4}};
+    case Kind::optional:
+      return {{"anyOf", Json::array({shape(*type.element, options, nullptr), {{"type", "null"}}})}};
     case Kind::record: return record_schema(type, defaults);
     case Kind::array:
       out = {{"type", "array"}, {"items", json_schema(*type.element, options, nullptr)}};

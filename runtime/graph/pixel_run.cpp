@@ -75,7 +75,9 @@ std::string inputs_at(const NodeType& type, std::span<const Tile> in, int x, int
 class PixelRun {
  public:
   explicit PixelRun(const PixelJob& job)
-      : job_(job), program_(*job.program), edge_(job.tile_edge != 0 ? job.tile_edge : program_.choose_edge()) {
+      : job_(job),
+        program_(*job.program),
+        edge_(job.tile_edge != 0 ? job.tile_edge : program_.choose_edge()) {
     grid_.area = job.region;
     grid_.width = edge_ > 0 ? edge_ : std::max(1, job.region.width());
     grid_.height = edge_ > 0 ? edge_ : std::max(1, job.region.height());
@@ -84,8 +86,10 @@ class PixelRun {
   PixelOutcome run() {
     Progress progress(job_.progress, std::max(1, grid_.tiles()));
     if (!job_.region.empty()) {
-      if (job_.sinks.empty()) walk_tiles(progress);
-      else walk_bands(progress);
+      if (job_.sinks.empty())
+        walk_tiles(progress);
+      else
+        walk_bands(progress);
     }
     return outcome();
   }
@@ -167,9 +171,9 @@ class PixelRun {
       keep.reserve(job.layers.size());
       for (const SinkSource& source : job.layers) {
         const auto* root = std::get_if<std::size_t>(&source.from);
-        const Raster& raster = root == nullptr       ? std::get<Raster>(source.from)
+        const Raster& raster = root == nullptr     ? std::get<Raster>(source.from)
                                : job_.whole[*root] ? *job_.whole[*root]
-                                                     : *band.roots[*root];
+                                                   : *band.roots[*root];
         const Rect part = intersection(raster.frame().window, band.rect);
         if (part == band.rect && raster.frame().samples() == 1) {
           layers.push_back(raster.view(part));
@@ -195,15 +199,16 @@ class PixelRun {
     constexpr std::size_t in_flight = 3;
     int next = 0;
     tbb::parallel_pipeline(
-        in_flight, tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order,
-                                               [&](tbb::flow_control& flow) {
-                                                 if (next == grid_.rows()) flow.stop();
-                                                 return next++;
-                                               }) &
-                       tbb::make_filter<int, std::shared_ptr<Band>>(
-                           tbb::filter_mode::parallel, [&](int row) { return fill_band(row, streamed, progress); }) &
-                       tbb::make_filter<std::shared_ptr<Band>, void>(tbb::filter_mode::serial_in_order,
-                                                                     [&](const std::shared_ptr<Band>& b) { write_band(*b); }));
+        in_flight,
+        tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order,
+                                    [&](tbb::flow_control& flow) {
+                                      if (next == grid_.rows()) flow.stop();
+                                      return next++;
+                                    }) &
+            tbb::make_filter<int, std::shared_ptr<Band>>(
+                tbb::filter_mode::parallel, [&](int row) { return fill_band(row, streamed, progress); }) &
+            tbb::make_filter<std::shared_ptr<Band>, void>(
+                tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<Band>& b) { write_band(*b); }));
   }
 
   // Runs the first bad tile again and looks at every operation on the way.
@@ -220,14 +225,15 @@ class PixelRun {
       targets.push_back(scratch.back().frame().window.empty() ? Tile{} : scratch.back().view());
     }
     std::optional<PixelCulprit> culprit;
-    program_.run(targets, workers_.local(), [&](std::size_t op, std::span<const Tile> in, std::span<const Tile> out) {
-      for (std::size_t port = 0; port < out.size() && !culprit; ++port) {
-        Health h = health_of(out[port]);
-        if (h.finite()) continue;
-        const auto [x, y] = h.pixel.value_or(std::pair{0, 0});
-        culprit = PixelCulprit{op, port, std::move(h), inputs_at(*program_.ops()[op].type, in, x, y)};
-      }
-    });
+    program_.run(
+        targets, workers_.local(), [&](std::size_t op, std::span<const Tile> in, std::span<const Tile> out) {
+          for (std::size_t port = 0; port < out.size() && !culprit; ++port) {
+            Health h = health_of(out[port]);
+            if (h.finite()) continue;
+            const auto [x, y] = h.pixel.value_or(std::pair{0, 0});
+            culprit = PixelCulprit{op, port, std::move(h), inputs_at(*program_.ops()[op].type, in, x, y)};
+          }
+        });
     return culprit;
   }
 

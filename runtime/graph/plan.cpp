@@ -49,7 +49,8 @@ class Planner {
   void make_whole(PortRef p, Whole why) {
     if (!is_pixel(p.node) || given(p)) return;
     const auto [at, added] = whole_.emplace(p, why);
-    if (!added && at->second == Whole::demanded) at->second = why;  // the stronger reason: it needs every pixel
+    if (!added && at->second == Whole::demanded)
+      at->second = why;  // the stronger reason: it needs every pixel
   }
 
   // Whether readers by tiles find the port in memory.
@@ -77,8 +78,10 @@ class Planner {
       if (!notes_[i].wanted) continue;
       for_each_link(i, [&](PortRef from, bool streams) {
         want(from, graph_.nodes[i].id);
-        if (!streams) make_whole(from, Whole::read_whole);
-        else if (!options_.fuse) make_whole(from, Whole::not_fused);
+        if (!streams)
+          make_whole(from, Whole::read_whole);
+        else if (!options_.fuse)
+          make_whole(from, Whole::not_fused);
       });
     }
   }
@@ -88,7 +91,8 @@ class Planner {
     const GraphNode& n = graph_.nodes[node];
     for (std::size_t i = 0; i < n.inputs.size(); ++i)
       for (const Source& s : n.inputs[i])
-        if (const auto* from = std::get_if<PortRef>(&s)) f(*from, n.type->inputs[i].tiled && is_pixel(from->node));
+        if (const auto* from = std::get_if<PortRef>(&s))
+          f(*from, n.type->inputs[i].tiled && is_pixel(from->node));
   }
 
   void find_levels() {
@@ -96,7 +100,8 @@ class Planner {
       if (!notes_[i].wanted) continue;
       for_each_link(i, [&](PortRef from, bool) {
         if (given(from)) return;
-        notes_[i].level = std::max(notes_[i].level, notes_[from.node].level + (!whole_.empty() && ends_stream(from) ? 1 : 0));
+        notes_[i].level = std::max(notes_[i].level,
+                                   notes_[from.node].level + (!whole_.empty() && ends_stream(from) ? 1 : 0));
       });
     }
   }
@@ -119,7 +124,8 @@ class Planner {
   void add_group(Group g) {
     for (std::size_t i = 0; i < groups_.size();) {
       Group& other = groups_[i];
-      const bool shared = std::any_of(g.nodes.begin(), g.nodes.end(), [&](std::size_t n) { return other.nodes.contains(n); });
+      const bool shared =
+          std::any_of(g.nodes.begin(), g.nodes.end(), [&](std::size_t n) { return other.nodes.contains(n); });
       if (other.level != g.level || !shared) {
         ++i;
         continue;
@@ -147,7 +153,8 @@ class Planner {
       }
       add_group(std::move(g));
     }
-    std::stable_sort(groups_.begin(), groups_.end(), [](const Group& a, const Group& b) { return a.level < b.level; });
+    std::stable_sort(groups_.begin(), groups_.end(),
+                     [](const Group& a, const Group& b) { return a.level < b.level; });
     for (Group& g : groups_) {
       std::sort(g.outputs.begin(), g.outputs.end());
       plan_.passes.push_back({{g.nodes.begin(), g.nodes.end()}, std::move(g.roots), std::move(g.outputs)});
@@ -182,8 +189,10 @@ class Planner {
   void wait_for(PortRef from, bool streams) {
     if (given(from)) return;
     const auto whole = whole_.empty() ? step_of_whole_.end() : step_of_whole_.find(from);
-    if (whole != step_of_whole_.end() && !streams && ends_stream(from)) waits_.push_back(whole->second);
-    else waits_.push_back(step_of_node_[from.node]);
+    if (whole != step_of_whole_.end() && !streams && ends_stream(from))
+      waits_.push_back(whole->second);
+    else
+      waits_.push_back(step_of_node_[from.node]);
   }
 
   void add_node_step(std::size_t node) {
@@ -214,10 +223,12 @@ class Planner {
     order.reserve(plan_.nodes.size());
     for (const PlannedNode& n : plan_.nodes) order.push_back(n.node);
     if (!groups_.empty())
-      std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return notes_[a].level < notes_[b].level; });
+      std::stable_sort(order.begin(), order.end(),
+                       [&](std::size_t a, std::size_t b) { return notes_[a].level < notes_[b].level; });
     std::size_t next_pass = 0;
     for (const std::size_t node : order) {
-      while (next_pass < groups_.size() && groups_[next_pass].level < notes_[node].level) add_pass_step(next_pass++);
+      while (next_pass < groups_.size() && groups_[next_pass].level < notes_[node].level)
+        add_pass_step(next_pass++);
       add_node_step(node);
     }
     while (next_pass < groups_.size()) add_pass_step(next_pass++);
@@ -231,7 +242,7 @@ class Planner {
   std::vector<Group> groups_;
   std::vector<std::size_t> step_of_node_;  // nowhere: not planned
   std::map<PortRef, std::size_t> step_of_whole_;
-  std::vector<std::size_t> waits_;         // of the step being added
+  std::vector<std::size_t> waits_;  // of the step being added
   Plan plan_;
 };
 

@@ -10,7 +10,8 @@ namespace frustum {
 namespace {
 
 constexpr std::size_t alignment = 64;
-constexpr std::size_t cache_budget = std::size_t{1} << 20;  // a core's share of L2 on the processors of the last decade
+constexpr std::size_t cache_budget = std::size_t{1}
+                                     << 20;  // a core's share of L2 on the processors of the last decade
 constexpr double worst_area_ratio = 1.5;
 
 std::size_t aligned(std::size_t n) { return (n + alignment - 1) / alignment * alignment; }
@@ -128,10 +129,11 @@ struct TileProgram::Live {
 };
 
 // Where an output's tile lies: in the target itself for a root that is filled exactly, else in the worker's memory.
-Tile TileProgram::place(std::size_t op, std::size_t port, Rect rect, std::span<const Tile> targets, TileMemory& memory,
-                        std::vector<std::byte*>& planes) const {
+Tile TileProgram::place(std::size_t op, std::size_t port, Rect rect, std::span<const Tile> targets,
+                        TileMemory& memory, std::vector<std::byte*>& planes) const {
   for (std::size_t r = 0; r < roots_.size(); ++r)
-    if (roots_[r].op == op && roots_[r].port == port && !targets[r].empty() && targets[r].rect() == rect) return targets[r];
+    if (roots_[r].op == op && roots_[r].port == port && !targets[r].empty() && targets[r].rect() == rect)
+      return targets[r];
   const Frame& frame = *ops_[op].prepared->frames[port];
   const std::ptrdiff_t row = padded_row(rect.width());
   for (std::size_t p = 0; p < frame.planes.size(); ++p) {
@@ -164,14 +166,18 @@ void TileProgram::run(std::span<const Tile> targets, TileWorker& worker, const A
 
     out.clear();
     for (std::size_t o = 0; o < outputs.size(); ++o) {
-      if (any(op.planes_read[o])) outputs[o].tile = place(i, o, rect, targets, worker.memory, outputs[o].planes);
+      if (any(op.planes_read[o]))
+        outputs[o].tile = place(i, o, rect, targets, worker.memory, outputs[o].planes);
       out.push_back(outputs[o].tile);
     }
     in.clear();
     for (const TileInput& input : op.inputs) {
-      if (input.op) in.push_back(live.outputs[*input.op][input.port].tile);
-      else if (input.whole) in.push_back(input.whole->view());
-      else in.emplace_back();
+      if (input.op)
+        in.push_back(live.outputs[*input.op][input.port].tile);
+      else if (input.whole)
+        in.push_back(input.whole->view());
+      else
+        in.emplace_back();
     }
 
     const auto start = Clock::now();

@@ -42,8 +42,8 @@ std::vector<std::string> small(std::vector<std::string> arguments) {
 }
 
 TEST(Cli, HelpHasAnExampleForEveryCommand) {
-  for (const char* command : {"run", "check", "plan", "inspect", "report", "nodes", "diff", "sweep", "diverge",
-                              "stability", "test", "new", "catalog"}) {
+  for (const char* command : {"run", "check", "plan", "inspect", "report", "nodes", "diff", "sweep",
+                              "diverge", "stability", "test", "new", "catalog"}) {
     const auto r = frustum({command, "--help"});
     EXPECT_EQ(r.code, 0) << command;
     EXPECT_THAT(r.out, AllOf(HasSubstr("Example:\n  frustum " + std::string(command)), HasSubstr("--json")))

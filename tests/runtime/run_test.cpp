@@ -121,7 +121,9 @@ TEST(Run, StreamsBandsInOrderToASinkWithTheBytesOfTheWhole) {
 
 TEST(Run, SavesWholeBuffersBesidePictures) {
   GraphMaker g = diamond();
-  g.output("picture", "sum", "sum.exr").output("statistics", "sum", "sum.json").output("factor", "factor", "n.csv");
+  g.output("picture", "sum", "sum.exr")
+      .output("statistics", "sum", "sum.json")
+      .output("factor", "factor", "n.csv");
   g.graph.outputs[1].whole = g.graph.outputs[2].whole = true;
   for (const std::optional<Rect> region : {std::optional<Rect>(), std::optional<Rect>({10, 10, 40, 20})})
     for (const bool fuse : {true, false}) {

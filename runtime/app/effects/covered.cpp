@@ -37,8 +37,7 @@ std::vector<PortRef> screen_meshes(const Graph& graph) {
   for (std::size_t n = 0; n < graph.nodes.size(); ++n) {
     const auto& ports = graph.nodes[n].type->outputs;
     for (std::size_t p = 0; p < ports.size(); ++p)
-      if (ports[p].takes(buffer_type<Mesh>()) && ports[p].spaces.has(Space::screen))
-        out.push_back({n, p});
+      if (ports[p].takes(buffer_type<Mesh>()) && ports[p].spaces.has(Space::screen)) out.push_back({n, p});
   }
   return out;
 }

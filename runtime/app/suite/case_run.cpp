@@ -178,8 +178,8 @@ void CaseRun::name_first_divergence(const Graph& graph, const std::map<PortRef, 
   const bool propose = options_.goldens == Goldens::propose;
   if (!golden_failed_ && !(propose && trace_)) return;
   if (golden_ports_.size() < 2 && !trace_) return;  // the one that failed is all that is known
-  for (const auto& [port, buffer] : buffers) {  // in running order
-    if (!buffer) continue;                      // an optional output that was not made
+  for (const auto& [port, buffer] : buffers) {      // in running order
+    if (!buffer) continue;                          // an optional output that was not made
     const std::string name = graph.name(port);
     const auto own = golden_ports_.find(port);
     const std::string key = trace_ && own == golden_ports_.end() ? trace_key(name)
