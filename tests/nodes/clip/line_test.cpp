@@ -94,11 +94,17 @@ void expect_exact(const glm::dvec4& p, const glm::dvec4& q, std::span<const glm:
   };
   EXPECT_TRUE(near(got->t_from, want->from)) << got->t_from << " " << want->from.get_d();
   EXPECT_TRUE(near(got->t_to, want->to)) << got->t_to << " " << want->to.get_d();
+  const auto crossing = [&](std::size_t plane) {
+    const Rational d0 = distance(planes[plane], exact(p)), d1 = distance(planes[plane], exact(q));
+    return Rational(d0 / (d0 - d1));
+  };
   if (got->from_plane) {
     EXPECT_LT(distance(planes[*got->from_plane], exact(p)), 0) << "the plane has the end outside";
+    EXPECT_TRUE(crossing(*got->from_plane) == want->from) << "the plane that cuts last, not nearly last";
   }
   if (got->to_plane) {
     EXPECT_LT(distance(planes[*got->to_plane], exact(q)), 0);
+    EXPECT_TRUE(crossing(*got->to_plane) == want->to);
   }
 }
 
@@ -144,6 +150,24 @@ TEST(ClipLine, DecidesExactlyAtCornersWhereThePrintedFormIsWrong) {
   }
   EXPECT_GT(printed_wrong, 100);
   EXPECT_GT(kept, 500);
+}
+
+// Two planes cut such segments at parameters that round to one number.
+TEST(ClipLine, NamesThePlaneThatCutsLastOfTwoThatMeetInACorner) {
+  const auto window = clip::rectangle_planes({0, 0}, {1, 1});
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> size(0.1, 10);
+  int told_apart = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double a = size(random), b = size(random), s = size(random) / 100;
+    const glm::dvec4 out(1 + a, 1 + b, 0, 1), in(1 - a * s, 1 - b * s, 0, 1);
+    expect_exact(out, in, window);
+    expect_exact(in, out, window);
+    const auto way = [&](glm::length_t k) -> Rational { return Rational(out[k]) - Rational(in[k]); };
+    const Rational x = (Rational(out.x) - 1) / way(0), y = (Rational(out.y) - 1) / way(1);
+    told_apart += x != y && x.get_d() == y.get_d() ? 1 : 0;
+  }
+  EXPECT_GT(told_apart, 100);
 }
 
 TEST(ClipLine, WhatWasClippedIsNotClippedAgain) {
