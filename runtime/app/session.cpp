@@ -59,9 +59,9 @@ void Session::use_disk(const std::string& folder, std::uint64_t limit_bytes, boo
 RunResult Session::run(const Graph& graph, RunOptions options, bool keep) {
   if (!options.make_sink) options.make_sink = open_image_sink;
   if (!options.save_buffer)
-    options.save_buffer = [cancel = options.cancel, memory = options.memory](const Buffer& buffer,
-                                                                             const SaveRequest& request) {
-      Context ctx = saving_context(buffer, cancel, memory);
+    options.save_buffer = [cancel = options.cancel](const Buffer& buffer, const SaveRequest& request) {
+      Context ctx;
+      ctx.cancel = cancel, ctx.admit = request.admit;
       save_buffer_file(buffer, request, ctx);
     };
   options.cache = keep && !check_ ? &cache_ : nullptr;

@@ -26,9 +26,9 @@ struct BufferType {
   std::string_view color = {};  // of its ports in the studio, "#rrggbb"
 
   std::size_t (*bytes)(const void*) = nullptr;
-  void (*hash)(const void*, Hasher&) = nullptr;              // of the content, nothing of addresses
+  void (*hash)(const void*, Hasher&) = nullptr;  // of the content, nothing of addresses
   Health (*health)(const void*) = nullptr;
-  Json (*summary)(const void*) = nullptr;                    // statistics for `frustum inspect`
+  Json (*summary)(const void*) = nullptr;  // statistics for `frustum inspect`
   // Rows [first, first + count) as {"columns": [...], "rows": [[...]], "total": n}; null where there is no table form.
   Json (*table)(const void*, std::size_t first, std::size_t count) = nullptr;
 
@@ -65,7 +65,9 @@ class Buffer {
   const void* data() const { return data_.get(); }
 
   template <class T>
-  bool is() const { return data_ && type_ == &buffer_type<T>(); }
+  bool is() const {
+    return data_ && type_ == &buffer_type<T>();
+  }
   template <class T>
   Ref<T> as() const {  // null where the buffer is of another kind
     return is<T>() ? std::static_pointer_cast<const T>(data_) : nullptr;

@@ -26,15 +26,15 @@ struct Related {
 };
 
 struct Diagnostic {
-  std::string code;                       // snake_case, stable: "unknown_type"
+  std::string code;  // snake_case, stable: "unknown_type"
   Severity severity = Severity::error;
-  std::string pointer;                    // RFC 6901, into `file`
-  std::string message;                    // one sentence without a full stop
+  std::string pointer;  // RFC 6901, into `file`
+  std::string message;  // one sentence without a full stop
   std::string expected = {}, got = {};
   std::vector<std::string> suggestions = {};
   std::vector<Related> related = {};
-  std::string file = {};                  // as the user would name it; empty for a document without a file
-  int line = 0, column = 0;               // 1-based; 0 where the document has no text
+  std::string file = {};     // as the user would name it; empty for a document without a file
+  int line = 0, column = 0;  // 1-based; 0 where the document has no text
 };
 
 class Diagnostics {
@@ -65,7 +65,8 @@ std::string child_pointer(std::string_view pointer, std::string_view key);
 std::string child_pointer(std::string_view pointer, std::size_t index);
 
 // At most three names, nearest first, none more than one edit farther than the first (a swap of neighbours is one edit).
-// Near are those within max(1, length / 3) edits that is_near (diagnostic.cpp) takes for meant; empty where none is.
+// Near are those within max(1, length / 3) edits that is_near (diagnostic.cpp) takes for meant. Where none is, the shortest
+// name that begins with `name`, if three letters of its last part are there; else empty.
 std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> known);
 
 }  // namespace frustum

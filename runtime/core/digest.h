@@ -30,14 +30,10 @@ class Hasher {
   Hasher& bytes(const void* data, std::size_t size);
   Hasher& text(std::string_view s);
   template <class T>
-    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
-  Hasher& value(T v) {
-    return bytes(&v, sizeof v);
-  }
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) Hasher& value(T v) { return bytes(&v, sizeof v); }
   Hasher& value(const Digest& d) { return value(d.high).value(d.low); }
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  Hasher& span(std::span<const T> values) {
+  requires std::is_trivially_copyable_v<T> Hasher& span(std::span<const T> values) {
     return value(values.size()).bytes(values.data(), values.size_bytes());
   }
   Digest done() const;

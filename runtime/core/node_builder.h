@@ -140,6 +140,11 @@ class NodeBuilder {
     type_.check = [check](const void* params) { check(*static_cast<const P*>(params)); };
     return *this;
   }
+  // What holds for other nodes because of the parameters, in a sentence that `frustum plan` shows.
+  NodeBuilder& states(std::string (*sentence)(const P&)) {
+    type_.states = [sentence](const void* params) { return sentence(*static_cast<const P*>(params)); };
+    return *this;
+  }
   template <class M>
   NodeBuilder& output(std::string_view name, M O::*member, std::string_view doc, PortOptions options = {}) {
     type_.outputs.push_back(port<O>(name, member, doc, options));

@@ -89,6 +89,8 @@ class NodeType {
   std::function<std::shared_ptr<void>()> default_params;
   // Throws NodeError for parameters that are wrong whatever the inputs are; empty: each is right by itself.
   std::function<void(const void* params)> check;
+  // A sentence on what holds for other nodes because of these parameters, shown by `frustum plan`; may be empty.
+  std::function<std::string(const void* params)> states;
 
   bool is_pixel() const { return static_cast<bool>(tile); }
   std::function<std::vector<Buffer>(std::span<const std::vector<Buffer>> inputs, const void* params,

@@ -50,9 +50,7 @@ struct Color {
 struct Range {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   bool open_low = false, open_high = false;  // whether the end itself is excluded
-  bool holds(double v) const {
-    return (open_low ? v > low : v >= low) && (open_high ? v < high : v <= high);
-  }
+  bool holds(double v) const { return (open_low ? v > low : v >= low) && (open_high ? v < high : v <= high); }
 };
 inline Range at_least(double low) { return {.low = low}; }
 inline Range above(double low) { return {.low = low, .open_low = true}; }
@@ -112,9 +110,9 @@ struct ParamType {
   enum class Kind { boolean, integer, real, text, file, color, choice, array, matrix, optional, record };
 
   Kind kind;
-  std::string name;                     // for messages: "a number", "an array of 3 numbers"
-  const ParamType* element = nullptr;   // array, optional
-  std::size_t count = 0;                // array: its length, 0 for any
+  std::string name;                    // for messages: "a number", "an array of 3 numbers"
+  const ParamType* element = nullptr;  // array, optional
+  std::size_t count = 0;               // array: its length, 0 for any
   std::vector<std::string> choices = {};
   std::vector<ParamField> fields = {};  // record
   bool exactly_one = false;             // record: exactly one field, such as one step of a transform
@@ -140,11 +138,16 @@ template <class S>
 class Fields {
  public:
   template <class M>
-  Fields& field(std::string_view name, M S::* member, std::string_view doc, ParamOptions options = {}) {
+  Fields& field(std::string_view name, M S::*member, std::string_view doc, ParamOptions options = {}) {
     static const S probe{};
-    const auto offset = reinterpret_cast<const char*>(&(probe.*member)) - reinterpret_cast<const char*>(&probe);
-    type_.fields.push_back(
-        {std::string(name), std::string(doc), options, &param_type<M>(), static_cast<std::size_t>(offset), {}});
+    const auto offset =
+        reinterpret_cast<const char*>(&(probe.*member)) - reinterpret_cast<const char*>(&probe);
+    type_.fields.push_back({std::string(name),
+                            std::string(doc),
+                            options,
+                            &param_type<M>(),
+                            static_cast<std::size_t>(offset),
+                            {}});
     return *this;
   }
   // Makes the field that was described last a knob.

@@ -109,34 +109,44 @@ ParamType make_integer_type() {
                        },
                        [](const void* v) { return static_cast<std::int64_t>(*static_cast<const T*>(v)); },
                        static_cast<std::int64_t>(Limits::min()),
-                       std::in_range<std::int64_t>(Limits::max()) ? static_cast<std::int64_t>(Limits::max())
-                                                                  : std::numeric_limits<std::int64_t>::max()});
+                       std::in_range<std::int64_t>(Limits::max())
+                           ? static_cast<std::int64_t>(Limits::max())
+                           : std::numeric_limits<std::int64_t>::max()});
 }
 
 template <class T>
 ParamType make_optional_type() {
   using E = typename Optional<T>::element;
-  return optional_type(param_type<E>(),
-                       {[](void* v) -> void* { return &static_cast<T*>(v)->emplace(); },
-                        [](void* v) { static_cast<T*>(v)->reset(); },
-                        [](const void* v) -> const void* {
-                          const auto& o = *static_cast<const T*>(v);
-                          return o ? &*o : nullptr;
-                        }});
+  return optional_type(param_type<E>(), {[](void* v) -> void* { return &static_cast<T*>(v)->emplace(); },
+                                         [](void* v) { static_cast<T*>(v)->reset(); },
+                                         [](const void* v) -> const void* {
+                                           const auto& o = *static_cast<const T*>(v);
+                                           return o ? &*o : nullptr;
+                                         }});
 }
 
 template <class T>
 ParamType make_type() {
-  if constexpr (std::same_as<T, bool>) return boolean_type();
-  else if constexpr (std::same_as<T, double>) return real_type();
-  else if constexpr (std::same_as<T, std::string>) return text_type();
-  else if constexpr (std::same_as<T, FilePath>) return file_type();
-  else if constexpr (std::same_as<T, Color>) return color_type();
-  else if constexpr (std::same_as<T, glm::dmat4>) return matrix_type();
-  else if constexpr (std::integral<T>) return make_integer_type<T>();
-  else if constexpr (std::is_enum_v<T>) return make_choice_type<T>();
-  else if constexpr (Array<T>::value) return make_array_type<T>();
-  else if constexpr (Optional<T>::value) return make_optional_type<T>();
+  if constexpr (std::same_as<T, bool>)
+    return boolean_type();
+  else if constexpr (std::same_as<T, double>)
+    return real_type();
+  else if constexpr (std::same_as<T, std::string>)
+    return text_type();
+  else if constexpr (std::same_as<T, FilePath>)
+    return file_type();
+  else if constexpr (std::same_as<T, Color>)
+    return color_type();
+  else if constexpr (std::same_as<T, glm::dmat4>)
+    return matrix_type();
+  else if constexpr (std::integral<T>)
+    return make_integer_type<T>();
+  else if constexpr (std::is_enum_v<T>)
+    return make_choice_type<T>();
+  else if constexpr (Array<T>::value)
+    return make_array_type<T>();
+  else if constexpr (Optional<T>::value)
+    return make_optional_type<T>();
   else {
     Fields<T> fields;
     describe(fields);

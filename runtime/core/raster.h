@@ -19,14 +19,20 @@ class Tile {
   // `planes` points, for each plane of the frame, to the element of sample 0 at the top left pixel of `stored`.
   Tile(const Frame* frame, Rect rect, Rect stored, std::ptrdiff_t row_stride, std::ptrdiff_t sample_stride,
        std::span<std::byte* const> planes)
-      : frame_(frame), rect_(rect), stored_(stored), row_stride_(row_stride), sample_stride_(sample_stride),
+      : frame_(frame),
+        rect_(rect),
+        stored_(stored),
+        row_stride_(row_stride),
+        sample_stride_(sample_stride),
         planes_(planes) {}
 
   const Frame& frame() const { return *frame_; }
   const Rect& rect() const { return rect_; }
   const Rect& stored() const { return stored_; }  // what may be addressed; rect() lies within it
   int samples() const { return frame_->samples(); }
-  bool empty() const { return frame_ == nullptr; }  // an optional input left out, or an output that nobody reads
+  bool empty() const {
+    return frame_ == nullptr;
+  }  // an optional input left out, or an output that nobody reads
   bool has(int plane) const { return planes_[static_cast<std::size_t>(plane)] != nullptr; }
   std::ptrdiff_t row_stride() const { return row_stride_; }        // elements
   std::ptrdiff_t sample_stride() const { return sample_stride_; }  // elements
@@ -34,7 +40,8 @@ class Tile {
   // The row `y` (absolute) of one sample of one plane; element 0 is pixel rect().x0.
   template <class T>
   T* row(int plane, int sample, int y) const {
-    assert(has(plane) && frame_->planes[static_cast<std::size_t>(plane)].kind == plane_kind_of<std::remove_const_t<T>>);
+    assert(has(plane) &&
+           frame_->planes[static_cast<std::size_t>(plane)].kind == plane_kind_of<std::remove_const_t<T>>);
     return reinterpret_cast<T*>(planes_[static_cast<std::size_t>(plane)]) + sample * sample_stride_ +
            (y - stored_.y0) * row_stride_ + (rect_.x0 - stored_.x0);
   }

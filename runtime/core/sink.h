@@ -35,14 +35,14 @@ class Sink {
 
 // An entry of a graph's "outputs", ready to be written.
 struct SinkRequest {
-  std::string path;              // where the finished file goes
-  Rect region;                   // what will be written, within the display window
-  Rect display_window;           // the whole picture
+  std::string path;     // where the finished file goes
+  Rect region;          // what will be written, within the display window
+  Rect display_window;  // the whole picture
   std::vector<SinkLayer> layers;
-  int bits = 0;                  // 0: the format's usual depth
-  std::string compression;       // empty: the format's usual one
+  int bits = 0;             // 0: the format's usual depth
+  std::string compression;  // empty: the format's usual one
   std::vector<std::pair<std::string, std::string>> metadata;
-  FileWarning warn = {};         // may be empty
+  FileWarning warn = {};  // may be empty
 };
 
 // Throws WorldError where the file cannot be made, NodeError where the format cannot hold the layers.
@@ -53,6 +53,8 @@ struct SaveRequest {
   std::string path;  // where the finished file goes; nothing is visible there before it is whole
   std::vector<std::pair<std::string, std::string>> metadata = {};
   FileWarning warn = {};  // may be empty
+  // Told all bytes that the writer will have taken, before it takes more; throws to refuse. May be empty.
+  std::function<void(std::uint64_t all)> admit = {};
 };
 
 // Throws WorldError where the file cannot be made, NodeError where the format cannot hold the buffer.

@@ -15,12 +15,15 @@ namespace frustum {
 enum class Space : std::uint8_t { none, object, world, eye, clip, ndc, screen };
 
 constexpr auto choices(Space) {
-  return std::array{std::pair{Space::none, "none"}, std::pair{Space::object, "object"}, std::pair{Space::world, "world"},
-                    std::pair{Space::eye, "eye"},   std::pair{Space::clip, "clip"},     std::pair{Space::ndc, "ndc"},
+  return std::array{std::pair{Space::none, "none"},    std::pair{Space::object, "object"},
+                    std::pair{Space::world, "world"},  std::pair{Space::eye, "eye"},
+                    std::pair{Space::clip, "clip"},    std::pair{Space::ndc, "ndc"},
                     std::pair{Space::screen, "screen"}};
 }
 
-constexpr std::string_view name_of(Space space) { return choices(space)[static_cast<std::size_t>(space)].second; }
+constexpr std::string_view name_of(Space space) {
+  return choices(space)[static_cast<std::size_t>(space)].second;
+}
 
 // A set of spaces; empty means that space does not matter.
 class Spaces {
@@ -34,7 +37,9 @@ class Spaces {
   constexpr bool has(Space s) const { return (bits_ & bit(s)) != 0; }
 
  private:
-  static constexpr std::uint8_t bit(Space s) { return static_cast<std::uint8_t>(1u << static_cast<unsigned>(s)); }
+  static constexpr std::uint8_t bit(Space s) {
+    return static_cast<std::uint8_t>(1u << static_cast<unsigned>(s));
+  }
   std::uint8_t bits_ = 0;
 };
 

@@ -79,10 +79,11 @@ class Arena {
 template <class Ports>
 class TilesOf {
  public:
-  TilesOf(std::span<const Tile> tiles, std::span<const std::size_t> offsets) : tiles_(tiles), offsets_(offsets) {}
+  TilesOf(std::span<const Tile> tiles, std::span<const std::size_t> offsets)
+      : tiles_(tiles), offsets_(offsets) {}
 
   template <class M>
-  const Tile& operator[](M Ports::* member) const {
+  const Tile& operator[](M Ports::*member) const {
     static const Ports probe{};
     static const Tile none;
     const auto offset = static_cast<std::size_t>(reinterpret_cast<const char*>(&(probe.*member)) -

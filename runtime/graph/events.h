@@ -30,11 +30,11 @@ struct NodeCaching {
 struct WorkDone {
   enum class Kind : std::uint8_t { node, prepare, pixels };
   Kind kind = Kind::node;
-  std::vector<std::string> nodes;            // ids: one, or for `pixels` all that were fused
+  std::vector<std::string> nodes;              // ids: one, or for `pixels` all that were fused
   std::chrono::nanoseconds start{0}, time{0};  // since the run began; wall time
-  std::uint64_t bytes = 0;                   // of the buffers that it published
+  std::uint64_t bytes = 0;                     // of the buffers that it published
   CacheVerdict cache = CacheVerdict::off;
-  int thread = 0;                            // a small number, 0 is the one that started the run
+  int thread = 0;  // a small number, 0 is the one that started the run
   std::vector<std::pair<std::string, std::uint64_t>> counters;
 };
 
@@ -42,7 +42,7 @@ struct WorkDone {
 struct PixelNodeTime {
   std::string node;
   std::chrono::nanoseconds time{0};
-  std::uint64_t pixels = 0;  // filled, margins included
+  std::uint64_t pixels = 0;   // filled, margins included
   std::uint64_t samples = 0;  // the same times the samples of a pixel
 };
 

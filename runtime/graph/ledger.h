@@ -46,8 +46,10 @@ class Ledger {
       live_ -= bytes;
       holders_.erase(storage);
     };
-    if (b.type().parts != nullptr) b.type().parts(b.data(), piece);
-    else piece(b.data(), b.bytes());
+    if (b.type().parts != nullptr)
+      b.type().parts(b.data(), piece);
+    else
+      piece(b.data(), b.bytes());
   }
 
   mutable std::mutex mutex_;

@@ -29,10 +29,10 @@ struct PixelJob {
   const TileProgram* program = nullptr;
   std::vector<std::optional<Raster>> whole;  // one a root: where it is made whole, if it is
   std::vector<SinkJob> sinks;
-  Rect region;                               // what is filled; for whole rasters cut to their windows
-  int tile_edge = 0;                         // as in RunOptions
+  Rect region;        // what is filled; for whole rasters cut to their windows
+  int tile_edge = 0;  // as in RunOptions
   const CancelFlag* cancel = nullptr;
-  std::function<void(double)> progress;      // from any thread, at most every 50 ms
+  std::function<void(double)> progress;  // from any thread, at most every 50 ms
 };
 
 // The first operation that made a NaN or infinity, in the first tile (in reading order) that holds one.

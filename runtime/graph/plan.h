@@ -12,8 +12,8 @@
 namespace frustum {
 
 struct Demand {
-  std::vector<PortRef> ports = {};         // whole buffers for the caller: inspections, --want NODE.PORT
-  std::vector<std::size_t> outputs = {};   // indices of Graph::outputs to write
+  std::vector<PortRef> ports = {};        // whole buffers for the caller: inspections, --want NODE.PORT
+  std::vector<std::size_t> outputs = {};  // indices of Graph::outputs to write
 };
 
 // Why a pixel port is held whole in memory instead of streaming.
@@ -32,29 +32,29 @@ struct PixelPass {
     PortRef port;
     Whole why;
   };
-  std::vector<std::size_t> nodes;      // in running order
-  std::vector<Root> roots;             // made whole by this pass
-  std::vector<std::size_t> outputs;    // Graph::outputs that this pass streams to their sinks
+  std::vector<std::size_t> nodes;    // in running order
+  std::vector<Root> roots;           // made whole by this pass
+  std::vector<std::size_t> outputs;  // Graph::outputs that this pass streams to their sinks
 };
 
 // A geometry node runs, a pixel node is prepared, or a pass walks its tiles.
 struct Step {
   enum class Kind : std::uint8_t { node, pass };
   Kind kind = Kind::node;
-  std::size_t index = 0;               // of Graph::nodes or Plan::passes
+  std::size_t index = 0;                    // of Graph::nodes or Plan::passes
   std::vector<std::size_t> followers = {};  // steps that wait for this one
-  std::size_t waits_for = 0;           // how many steps it waits for
+  std::size_t waits_for = 0;                // how many steps it waits for
 };
 
 struct Plan {
-  std::vector<PlannedNode> nodes;      // those that run, in the graph's order
-  std::vector<std::size_t> skipped;    // graph nodes that nobody asked for
-  std::vector<PixelPass> passes;       // in running order
-  std::vector<Step> steps;             // a step stands after those it waits for
+  std::vector<PlannedNode> nodes;    // those that run, in the graph's order
+  std::vector<std::size_t> skipped;  // graph nodes that nobody asked for
+  std::vector<PixelPass> passes;     // in running order
+  std::vector<Step> steps;           // a step stands after those it waits for
 };
 
 struct PlanOptions {
-  bool fuse = true;                    // false: every pixel port that is read becomes whole
+  bool fuse = true;  // false: every pixel port that is read becomes whole
   // A region is asked for: ports that are whole only because they are demanded hold no more than that, so nodes that read
   // them by tiles do not read them from memory.
   bool cropped = false;

@@ -30,6 +30,7 @@ void save_output(RunState& state, const GraphOutput& output) {
   request.warn = [&](std::string_view code, const std::string& message) {
     warn_of_output(state, output, std::string(code), fmt::format("output '{}': {}", output.name, message));
   };
+  request.admit = [&state](std::uint64_t all) { state.check_memory(all); };
   state.options.save_buffer(state.buffer(output.layers.front().from), request);
 }
 

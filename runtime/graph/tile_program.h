@@ -15,16 +15,16 @@ namespace frustum {
 
 // Where an operation's tiled input comes from.
 struct TileInput {
-  std::optional<std::size_t> op;          // an earlier operation of the program
-  std::size_t port = 0;                   // of that operation
-  std::optional<Raster> whole = {};       // or a raster in memory; neither: the input is left out or not tiled
+  std::optional<std::size_t> op;     // an earlier operation of the program
+  std::size_t port = 0;              // of that operation
+  std::optional<Raster> whole = {};  // or a raster in memory; neither: the input is left out or not tiled
 };
 
 struct TileOp {
   const NodeType* type = nullptr;
   std::shared_ptr<const PreparedNode> prepared;
-  std::vector<TileInput> inputs;                    // one an input of the type
-  std::vector<std::vector<bool>> planes_read;       // [output][plane]; an output that nobody reads has none set
+  std::vector<TileInput> inputs;               // one an input of the type
+  std::vector<std::vector<bool>> planes_read;  // [output][plane]; an output that nobody reads has none set
 };
 
 // A port whose pixels are wanted, and the root's index among the targets of run().

@@ -15,24 +15,42 @@ inline std::atomic<int> number_runs{0};  // how often "test.number" ran
 
 namespace number {
 struct Inputs {};
-struct Params { double value = 1; };
-struct Outputs { Ref<Number> number; };
+struct Params {
+  double value = 1;
+};
+struct Outputs {
+  Ref<Number> number;
+};
 inline Outputs run(const Inputs&, const Params& p, Context&) {
   ++number_runs;
   if (p.value < 0) throw NodeError("negative", "the value is negative");
   return {std::make_shared<Number>(Number{p.value})};
 }
 inline NodeType type() {
-  return node("test.number", run).doc("A number.").param("value", &Params::value, "It.").output("number", &Outputs::number, "It.");
+  return node("test.number", run)
+      .doc("A number.")
+      .param("value", &Params::value, "It.")
+      .output("number", &Outputs::number, "It.");
 }
 }  // namespace number
 
 // plane R at (x, y, sample): a scramble of all three, times the number.
 namespace source {
-struct Inputs { std::optional<Ref<Number>> scale; };
-struct Params { glm::ivec2 size{40, 30}; int samples = 1; glm::ivec2 nan_at{-1, -1}; };
-struct Outputs { Tiled<Image> image; };
-struct State { float scale; glm::ivec2 nan_at; };
+struct Inputs {
+  std::optional<Ref<Number>> scale;
+};
+struct Params {
+  glm::ivec2 size{40, 30};
+  int samples = 1;
+  glm::ivec2 nan_at{-1, -1};
+};
+struct Outputs {
+  Tiled<Image> image;
+};
+struct State {
+  float scale;
+  glm::ivec2 nan_at;
+};
 inline float value(int x, int y, int s) {
   const auto h = static_cast<std::uint32_t>(x * 73856093 ^ y * 19349663 ^ s * 83492791) * 2654435761u;
   return static_cast<float>(h >> 8) / 16777216.0f;
@@ -44,7 +62,8 @@ inline Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Conte
   if (p.samples > 1) {
     auto pattern = std::make_shared<SamplePattern>();
     pattern->samples = p.samples;
-    for (int s = 0; s < p.samples; ++s) pattern->x.push_back(static_cast<std::uint16_t>(s)), pattern->y.push_back(2048);
+    for (int s = 0; s < p.samples; ++s)
+      pattern->x.push_back(static_cast<std::uint16_t>(s)), pattern->y.push_back(2048);
     f.pattern = pattern;
   }
   return {{static_cast<float>(in.scale ? (*in.scale)->value : 1.0), p.nan_at}, {std::move(f)}};
@@ -59,18 +78,31 @@ inline void tile(const State& s, const TilesOf<Inputs>&, const TilesOf<Outputs>&
                                                      : s.scale * value(x, y, i);
 }
 inline NodeType type() {
-  return pixel_node("test.source", prepare, tile).doc("Noise.").input("scale", &Inputs::scale, "Factor.")
-      .param("size", &Params::size, "Size.").param("samples", &Params::samples, "Samples.").param("nan_at", &Params::nan_at, "A NaN.")
+  return pixel_node("test.source", prepare, tile)
+      .doc("Noise.")
+      .input("scale", &Inputs::scale, "Factor.")
+      .param("size", &Params::size, "Size.")
+      .param("samples", &Params::samples, "Samples.")
+      .param("nan_at", &Params::nan_at, "A NaN.")
       .output("image", &Outputs::image, "Noise.");
 }
 }  // namespace source
 
 // The mean of the (2 radius + 1)^2 pixels around, in fixed order; pixels outside the window do not count.
 namespace blur {
-struct Inputs { Tiled<Image> image; };
-struct Params { int radius = 1; };
-struct Outputs { Tiled<Image> image; };
-struct State { int plane, radius; Rect window; };
+struct Inputs {
+  Tiled<Image> image;
+};
+struct Params {
+  int radius = 1;
+};
+struct Outputs {
+  Tiled<Image> image;
+};
+struct State {
+  int plane, radius;
+  Rect window;
+};
 inline Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context&) {
   return {{in.image.read("R"), p.radius, in.image.frame().window}, {in.image.frame()}};
 }
@@ -89,16 +121,24 @@ inline void tile(const State& s, const TilesOf<Inputs>& in, const TilesOf<Output
 }
 inline Rect reads(const State& s, std::string_view, Rect r) { return r.grown(s.radius); }
 inline NodeType type() {
-  return pixel_node("test.blur", prepare, tile).reads(reads).doc("Mean.").input("image", &Inputs::image, "Pixels.")
-      .param("radius", &Params::radius, "Radius.").output("image", &Outputs::image, "Means.");
+  return pixel_node("test.blur", prepare, tile)
+      .reads(reads)
+      .doc("Mean.")
+      .input("image", &Inputs::image, "Pixels.")
+      .param("radius", &Params::radius, "Radius.")
+      .output("image", &Outputs::image, "Means.");
 }
 }  // namespace blur
 
 // a + b, pixel by pixel.
 namespace add {
-struct Inputs { Tiled<Image> a, b; };
+struct Inputs {
+  Tiled<Image> a, b;
+};
 struct Params {};
-struct Outputs { Tiled<Image> image; };
+struct Outputs {
+  Tiled<Image> image;
+};
 struct State {};
 inline Prepared<State, Outputs> prepare(const Inputs& in, const Params&, Context&) {
   in.a.read("R"), in.b.read("R");
@@ -115,16 +155,23 @@ inline void tile(const State&, const TilesOf<Inputs>& in, const TilesOf<Outputs>
       }
 }
 inline NodeType type() {
-  return pixel_node("test.add", prepare, tile).doc("Sum.").input("a", &Inputs::a, "One.").input("b", &Inputs::b, "Other.")
+  return pixel_node("test.add", prepare, tile)
+      .doc("Sum.")
+      .input("a", &Inputs::a, "One.")
+      .input("b", &Inputs::b, "Other.")
       .output("image", &Outputs::image, "Sums.");
 }
 }  // namespace add
 
 // Needs the whole picture: the sum of all values.
 namespace total {
-struct Inputs { Ref<Image> image; };
+struct Inputs {
+  Ref<Image> image;
+};
 struct Params {};
-struct Outputs { Ref<Number> number; };
+struct Outputs {
+  Ref<Number> number;
+};
 inline Outputs run(const Inputs& in, const Params&, Context&) {
   const Raster& r = in.image->raster;
   double sum = 0;
@@ -134,7 +181,10 @@ inline Outputs run(const Inputs& in, const Params&, Context&) {
   return {std::make_shared<Number>(Number{sum})};
 }
 inline NodeType type() {
-  return node("test.total", run).doc("Sum.").input("image", &Inputs::image, "Pixels.").output("number", &Outputs::number, "Sum.");
+  return node("test.total", run)
+      .doc("Sum.")
+      .input("image", &Inputs::image, "Pixels.")
+      .output("number", &Outputs::number, "Sum.");
 }
 }  // namespace total
 
@@ -147,8 +197,8 @@ inline const Registry& registry() {
 class GraphMaker {
  public:
   Graph graph;
-  GraphMaker& add(const std::string& id, const std::string& type, std::vector<std::pair<std::string, std::string>> links,
-                  const std::string& params = "{}");
+  GraphMaker& add(const std::string& id, const std::string& type,
+                  std::vector<std::pair<std::string, std::string>> links, const std::string& params = "{}");
   GraphMaker& output(const std::string& name, const std::string& from, const std::string& file);
   PortRef port(const std::string& address) const { return graph.find_port(address).value(); }
 };
