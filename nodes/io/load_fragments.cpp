@@ -24,9 +24,7 @@ void check(const Params& p) {
 
 Outputs run(const Inputs&, const Params& p, Context& ctx) {
   std::uint64_t unsorted = 0;
-  Fragments f = in_order_of_depth(read_deep_file(p.file.resolved, p.file.written, p.subimage,
-                                                 [&ctx](std::uint64_t bytes) { ctx.claim(bytes); }),
-                                  unsorted);
+  Fragments f = in_order_of_depth(read_deep_file(p.file.resolved, p.file.written, p.subimage, ctx), unsorted);
   ctx.count("fragments", f.count());
   if (unsorted > 0)
     ctx.warn("fragments_sorted",

@@ -99,7 +99,7 @@ void save_buffer_file(const Buffer& buffer, const SaveRequest& request, Context&
   if (std::find(known.begin(), known.end(), kind) == known.end())
     throw NodeError("unknown_format", fmt::format("{}: a {} is saved as {}", request.path, buffer.type().name,
                                                   fmt::join(known, ", ")));
-  if (kind == "exr") return write_deep_file(*buffer.as<Fragments>(), request);
+  if (kind == "exr") return write_deep_file(*buffer.as<Fragments>(), request, ctx);
   PartialFile file(request.path);
   if (kind == "json")
     write_json(buffer, request, file, ctx);

@@ -7,17 +7,16 @@
 
 namespace frustum {
 
-Fragments read_deep_file(const std::string& path, std::string_view name, int part,
-                         const std::function<void(std::uint64_t bytes)>& claim) {
-  return image_module().read_deep(path, name, part, claim);
+Fragments read_deep_file(const std::string& path, std::string_view name, int part, Context& ctx) {
+  return image_module().read_deep(path, name, part, ctx);
 }
 
-void write_deep_file(const Fragments& fragments, const SaveRequest& request) {
+void write_deep_file(const Fragments& fragments, const SaveRequest& request, Context& ctx) {
   if (fragments.samples() > 1)
     throw NodeError("format_cannot_hold",
                     fmt::format("{}: deep EXR has one list a pixel, and these fragments have {}",
                                 request.path, fragments.samples()));
-  image_module().write_deep(fragments, request);
+  image_module().write_deep(fragments, request, ctx);
 }
 
 }  // namespace frustum

@@ -18,8 +18,8 @@ class ImageModule {
   virtual std::string encode_png(const Raster&, int bits, std::string_view name) const = 0;
   virtual RemoveTemporaryFiles temporary_files() const = 0;  // of the module's own copy
   virtual Fragments read_deep(const std::string& path, std::string_view name, int part,
-                              const std::function<void(std::uint64_t bytes)>& claim) const = 0;
-  virtual void write_deep(const Fragments&, const SaveRequest&) const = 0;
+                              Context& ctx) const = 0;
+  virtual void write_deep(const Fragments&, const SaveRequest&, Context&) const = 0;
 };
 
 // The module, opened at the first call. Throws WorldError("no_image_module").

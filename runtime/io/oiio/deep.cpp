@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <map>
 #include <new>
 
 // OpenImageIO reads the counts and takes memory for them in one step, so a file that lies about them would be
@@ -26,7 +27,8 @@
 namespace frustum::oiio {
 namespace {
 
-using Claim = std::function<void(std::uint64_t bytes)>;
+// Rows pass between us and the library a band at a time; it takes as much memory again as it is handed.
+constexpr int band_rows = 64;
 
 struct File {
   std::string_view name;
@@ -74,7 +76,7 @@ std::string renamed(std::string name, bool to_file) {
 // The lists of one part, read in two steps: how long they are, then what is in them.
 class Reader {
  public:
-  Reader(const Imf::Header& header, const File& file, const Claim& claim) : file_(file), claim_(claim) {
+  Reader(const Imf::Header& header, const File& file, Context& ctx) : file_(file), ctx_(ctx) {
     const Imath::Box2i window = header.dataWindow();
     out_.window = {window.min.x, window.min.y, window.max.x + 1, window.max.y + 1};
     const auto pixels = static_cast<std::uint64_t>(out_.window.area());
@@ -88,7 +90,7 @@ class Reader {
     if (channels_.empty()) file.malformed("it has no channels");
     if (const auto* space = header.findTypedAttribute<Imf::StringAttribute>("frustum:colorSpace"))
       out_.color_space = space->value();
-    claim_(pixels * (sizeof(unsigned) + sizeof(std::uint64_t) + channels_.size() * sizeof(char*)));
+    ctx_.claim(pixels * (sizeof(unsigned) + sizeof(std::uint64_t) + channels_.size() * sizeof(char*)));
     counts_.resize(pixels);
     for (auto& c : channels_) c.places.resize(pixels);
   }
@@ -114,7 +116,7 @@ class Reader {
     out_.first.resize(counts_.size() + 1);
     for (std::size_t i = 0; i < counts_.size(); ++i) out_.first[i + 1] = out_.first[i] + counts_[i];
     file_.check_claim(out_.count(), "fragments", channels_.size() * sizeof(float));
-    claim_(out_.count() * channels_.size() * sizeof(float));
+    ctx_.claim(out_.count() * channels_.size() * sizeof(float));
     for (auto& c : channels_) {
       const NumberKind kind = c.integer ? NumberKind::u32 : NumberKind::f32;
       c.column = std::make_shared<Column>(renamed(c.name, false), Domain::vertex, kind, 1, out_.count());
@@ -141,33 +143,39 @@ class Reader {
   };
 
   const File& file_;
-  const Claim& claim_;
+  Context& ctx_;
   Fragments out_;
   std::vector<unsigned> counts_;
   std::vector<Channel> channels_;
 };
 
-Fragments read_part(Imf::MultiPartInputFile& in, int part, const File& file, const Claim& claim) {
+Fragments read_part(Imf::MultiPartInputFile& in, int part, const File& file, Context& ctx) {
   const Imf::Header& header = in.header(part);
   const std::string type = header.hasType() ? header.type() : "";
   if (type != Imf::DEEPSCANLINE && type != Imf::DEEPTILE)
     throw NodeError("not_deep", fmt::format("{}: part {} has one value a pixel: io.load_image reads it",
                                             file.name, part));
-  Reader reader(header, file, claim);
+  Reader reader(header, file, ctx);
   if (type == Imf::DEEPSCANLINE) {
     Imf::DeepScanLineInputPart rows(in, part);
     rows.setFrameBuffer(reader.frame_buffer());
     const Imath::Box2i window = header.dataWindow();
     rows.readPixelSampleCounts(window.min.y, window.max.y);
     reader.take_memory();
-    rows.readPixels(window.min.y, window.max.y);
+    for (int y = window.min.y; y <= window.max.y; y += band_rows) {
+      rows.readPixels(y, std::min(y + band_rows - 1, window.max.y));
+      ctx.poll();
+    }
   } else {
     Imf::DeepTiledInputPart tiles(in, part);
     tiles.setFrameBuffer(reader.frame_buffer());
     const int x = tiles.numXTiles(0) - 1, y = tiles.numYTiles(0) - 1;
     tiles.readPixelSampleCounts(0, x, 0, y, 0);
     reader.take_memory();
-    tiles.readTiles(0, x, 0, y, 0);
+    for (int row = 0; row <= y; ++row) {
+      tiles.readTiles(0, x, row, row, 0);
+      ctx.poll();
+    }
   }
   return reader.finish();
 }
@@ -197,58 +205,112 @@ Imf::Header header_of(const Fragments& f, const SaveRequest& request) {
   return header;
 }
 
-void write_rows(const Fragments& f, Imf::DeepScanLineOutputFile& out) {
-  const auto pixels = static_cast<std::size_t>(f.window.area()),
-             width = static_cast<std::size_t>(f.window.width());
-  const std::ptrdiff_t before = std::ptrdiff_t{f.window.y0} * f.window.width() + f.window.x0;
-  const auto origin = [before](auto* first) {
-    return reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(first) -
-                                   static_cast<std::uintptr_t>(before) * sizeof *first);
-  };
-  std::vector<unsigned> counts(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) counts[i] = static_cast<unsigned>(f.first[i + 1] - f.first[i]);
-  std::vector<std::vector<char*>> places(f.channels.size(), std::vector<char*>(pixels));
-  std::vector<std::vector<float>> narrowed(f.channels.size());
-  Imf::DeepFrameBuffer from;
-  from.insertSampleCountSlice(
-      Imf::Slice(Imf::UINT, origin(counts.data()), sizeof(unsigned), sizeof(unsigned) * width));
-  for (std::size_t k = 0; k < f.channels.size(); ++k) {
-    const Column& c = *f.channels[k];
-    const void* data = c.data();
-    if (c.kind() == NumberKind::f64) {
-      for (const double v : c.values<double>()) narrowed[k].push_back(static_cast<float>(v));
-      data = narrowed[k].data();
-    }
-    for (std::size_t i = 0; i < pixels; ++i)  // the library takes them as writable, and only reads
-      places[k][i] = const_cast<char*>(static_cast<const char*>(data)) + f.first[i] * sizeof(float);
-    from.insert(renamed(c.name(), true),
-                Imf::DeepSlice(c.kind() == NumberKind::u32 ? Imf::UINT : Imf::FLOAT, origin(places[k].data()),
-                               sizeof(char*), sizeof(char*) * width, sizeof(float)));
+// Where the lists of one band lie.
+class Band {
+ public:
+  explicit Band(const Fragments& f)
+      : f_(f), counts_(pixels_of(f)), places_(f.channels.size(), std::vector<char*>(pixels_of(f))) {}
+
+  static std::size_t pixels_of(const Fragments& f) {
+    return static_cast<std::size_t>(f.window.width()) * std::min(band_rows, f.window.height());
   }
-  out.setFrameBuffer(from);
-  out.writePixels(f.window.height());
+  static std::uint64_t bytes(const Fragments& f) {
+    const auto wide = std::count_if(f.channels.begin(), f.channels.end(),
+                                    [](const Ref<Column>& c) { return c->kind() == NumberKind::f64; });
+    std::uint64_t most = 0;  // fragments of a band
+    for (std::size_t first = 0, end = 0; first + 1 < f.first.size(); first = end) {
+      end = std::min(first + pixels_of(f), f.first.size() - 1);
+      most = std::max(most, f.first[end] - f.first[first]);
+    }
+    return pixels_of(f) * (sizeof(unsigned) + f.channels.size() * sizeof(char*)) +
+           static_cast<std::uint64_t>(wide) * most * sizeof(float);
+  }
+
+  // The rows from y0 (of the window's top) to y1.
+  Imf::DeepFrameBuffer rows(int y0, int y1) {
+    const auto width = static_cast<std::size_t>(f_.window.width());
+    first_ = static_cast<std::size_t>(y0) * width, count_ = static_cast<std::size_t>(y1 - y0) * width;
+    before_ = (std::ptrdiff_t{f_.window.y0} + y0) * f_.window.width() + f_.window.x0;
+    for (std::size_t i = 0; i < count_; ++i)
+      counts_[i] = static_cast<unsigned>(f_.first[first_ + i + 1] - f_.first[first_ + i]);
+    Imf::DeepFrameBuffer from;
+    from.insertSampleCountSlice(
+        Imf::Slice(Imf::UINT, origin(counts_.data()), sizeof(unsigned), sizeof(unsigned) * width));
+    for (std::size_t k = 0; k < f_.channels.size(); ++k) {
+      const Column& c = *f_.channels[k];
+      place(k);
+      from.insert(
+          renamed(c.name(), true),
+          Imf::DeepSlice(c.kind() == NumberKind::u32 ? Imf::UINT : Imf::FLOAT, origin(places_[k].data()),
+                         sizeof(char*), sizeof(char*) * width, sizeof(float)));
+    }
+    return from;
+  }
+
+ private:
+  // The library addresses pixels by their absolute coordinates from a pointer to pixel 0, 0.
+  char* origin(auto* first) const {
+    return reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(first) -
+                                   static_cast<std::uintptr_t>(before_) * sizeof *first);
+  }
+
+  void place(std::size_t k) {
+    const Column& c = *f_.channels[k];
+    const std::uint64_t first = f_.first[first_], end = f_.first[first_ + count_];
+    const char* data = static_cast<const char*>(c.data()) + first * sizeof(float);
+    if (c.kind() == NumberKind::f64) {
+      auto& narrowed = narrowed_[k];
+      narrowed.clear();
+      for (const double v : c.values<double>().subspan(first, end - first))
+        narrowed.push_back(static_cast<float>(v));
+      data = reinterpret_cast<const char*>(narrowed.data());
+    }
+    for (std::size_t i = 0; i < count_; ++i)  // the library takes them as writable, and only reads
+      places_[k][i] = const_cast<char*>(data) + (f_.first[first_ + i] - first) * sizeof(float);
+  }
+
+  const Fragments& f_;
+  std::size_t first_ = 0, count_ = 0;  // pixels
+  std::ptrdiff_t before_ = 0;
+  std::vector<unsigned> counts_;
+  std::vector<std::vector<char*>> places_;
+  std::map<std::size_t, std::vector<float>> narrowed_;
+};
+
+void write_rows(const Fragments& f, Imf::DeepScanLineOutputFile& out, PartialFile& file, Context& ctx) {
+  ctx.claim(Band::bytes(f));
+  Band band(f);
+  for (int y = 0; y < f.window.height(); y += band_rows) {
+    const int end = std::min(y + band_rows, f.window.height());
+    out.setFrameBuffer(band.rows(y, end));
+    out.writePixels(end - y);
+    file.check();  // a full disk ends it here
+    ctx.poll();
+  }
 }
 
 }  // namespace
 
-Fragments read_deep(const std::string& path, std::string_view name, int part, const Claim& claim) {
+Fragments read_deep(const std::string& path, std::string_view name, int part, Context& ctx) {
   const File file{name, size_of(path, name)};
   try {
     Imf::MultiPartInputFile in(path.c_str());
     if (part < 0 || part >= in.parts()) file.malformed(fmt::format("there is no subimage {}", part));
-    return read_part(in, part, file, claim);
+    return read_part(in, part, file, ctx);
   } catch (const std::bad_alloc&) {
     throw WorldError("out_of_memory", fmt::format("no memory for the fragments of {}", name));
   } catch (const NodeError&) {
     throw;
   } catch (const WorldError&) {
     throw;
+  } catch (const Cancelled&) {
+    throw;
   } catch (const std::exception& e) {
     file.malformed(said_by(e));
   }
 }
 
-void write_deep(const Fragments& fragments, const SaveRequest& request) {
+void write_deep(const Fragments& fragments, const SaveRequest& request, Context& ctx) {
   if (fragments.window.empty() || fragments.channels.empty())
     throw NodeError("format_cannot_hold",
                     fmt::format("{}: EXR holds no picture without pixels", request.path));
@@ -256,9 +318,13 @@ void write_deep(const Fragments& fragments, const SaveRequest& request) {
   try {
     Stream stream(request.path, file);
     Imf::DeepScanLineOutputFile out(stream, header_of(fragments, request));
-    write_rows(fragments, out);
+    write_rows(fragments, out, file, ctx);
   } catch (const std::bad_alloc&) {
     throw WorldError("out_of_memory", fmt::format("no memory to write {}", request.path));
+  } catch (const NodeError&) {
+    throw;
+  } catch (const Cancelled&) {
+    throw;
   } catch (const std::exception& e) {
     file.check();  // says it better
     throw WorldError("cannot_write_file", fmt::format("cannot write {}: {}", request.path, e.what()));

@@ -4,8 +4,7 @@
 
 namespace frustum::oiio {
 
-Fragments read_deep(const std::string& path, std::string_view name, int part,
-                    const std::function<void(std::uint64_t bytes)>& claim);
-void write_deep(const Fragments& fragments, const SaveRequest& request);
+Fragments read_deep(const std::string& path, std::string_view name, int part, Context& ctx);
+void write_deep(const Fragments& fragments, const SaveRequest& request, Context& ctx);
 
 }  // namespace frustum::oiio

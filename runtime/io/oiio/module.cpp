@@ -22,11 +22,12 @@ class OiioModule : public frustum::ImageModule {
   }
   frustum::RemoveTemporaryFiles temporary_files() const override { return frustum::remove_temporary_files; }
   frustum::Fragments read_deep(const std::string& path, std::string_view name, int part,
-                               const std::function<void(std::uint64_t bytes)>& claim) const override {
-    return frustum::oiio::read_deep(path, name, part, claim);
+                               frustum::Context& ctx) const override {
+    return frustum::oiio::read_deep(path, name, part, ctx);
   }
-  void write_deep(const frustum::Fragments& fragments, const frustum::SaveRequest& request) const override {
-    frustum::oiio::write_deep(fragments, request);
+  void write_deep(const frustum::Fragments& fragments, const frustum::SaveRequest& request,
+                  frustum::Context& ctx) const override {
+    frustum::oiio::write_deep(fragments, request, ctx);
   }
 };
 

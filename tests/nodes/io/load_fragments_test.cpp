@@ -11,7 +11,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <limits>
+#include <numeric>
 #include <sstream>
 
 namespace frustum {
@@ -22,9 +24,9 @@ using testing::HasSubstr;
 const std::string data = std::string(FRUSTUM_SOURCE_DIR) + "/graphs/data";
 
 // Lists of 0 to 4 fragments over a window that does not begin at 0, 0.
-Fragments lists() {
+Fragments lists(int height = 11) {
   test::Random random(3);
-  Fragments f{.window = {-3, 2, 14, 13}, .color_space = "lin_rec709"};
+  Fragments f{.window = {-3, 2, 14, 2 + height}, .color_space = "lin_rec709"};
   for (std::int64_t i = 0; i < f.window.area(); ++i) f.first.push_back(f.first.back() + random.below(5));
   const auto id = Column::make<std::uint32_t>("id", Domain::vertex, f.count());
   for (auto& v : id->values<std::uint32_t>()) v = static_cast<std::uint32_t>(random.bits());
@@ -163,15 +165,77 @@ TEST(LoadFragments, ALyingWindowIsRefusedBeforeItsMemoryIsTaken) {
   const std::int32_t x_max = 1 << 30;
   std::memcpy(bad.data() + at + key.size() + 4 + 8, &x_max, sizeof x_max);
   const std::string path = folder.write("bad.exr", bad);
-  std::uint64_t claimed = 0;
+  Context ctx;
   try {
-    read_deep_file(path, "bad.exr", 0, [&](std::uint64_t bytes) { claimed += bytes; });
+    read_deep_file(path, "bad.exr", 0, ctx);
     ADD_FAILURE() << "a picture of 2^30 columns";
   } catch (const NodeError& e) {
     EXPECT_EQ(e.code, "malformed_file");
     EXPECT_THAT(e.what(), HasSubstr("bad.exr"));
   }
-  EXPECT_EQ(claimed, 0u);
+  EXPECT_EQ(ctx.claimed(), 0u);
+}
+
+// The file is written and read 64 rows at a time.
+TEST(LoadFragments, APictureOfManyBandsReadsBack) {
+  const test::TempFolder folder;
+  const Fragments tall = lists(193);
+  std::uint64_t unsorted = 0;
+  Context ctx;
+  expect_same(sorted(tall), in_order_of_depth(read_deep_file(saved(tall, folder), "tall", 0, ctx), unsorted));
+}
+
+Ref<Fragments> wide_numbers(int height) {
+  Fragments f = lists(height);
+  const auto c = Column::make<double>("area", Domain::vertex, f.count());
+  std::iota(c->values<double>().begin(), c->values<double>().end(), 0.25);
+  f.channels.push_back(c);
+  return std::make_shared<const Fragments>(std::move(f));
+}
+
+TEST(LoadFragments, WideNumbersAreRoundedInEveryBand) {
+  const test::TempFolder folder;
+  const Ref<Fragments> f = wide_numbers(150);
+  const Fragments back = [&] {
+    Context ctx;
+    return read_deep_file(saved(*f, folder), "wide", 0, ctx);
+  }();
+  const Column* area = back.find("area");
+  ASSERT_NE(area, nullptr);
+  for (std::size_t i = 0; i < area->rows(); ++i)
+    ASSERT_EQ(area->values<float>()[i], static_cast<float>(0.25 + static_cast<double>(i)));
+}
+
+TEST(LoadFragments, AWriterThatIsCancelledLeavesNoFile) {
+  const test::TempFolder folder;
+  CancelFlag cancel;
+  cancel.cancel();
+  Context ctx;
+  ctx.cancel = &cancel;
+  EXPECT_THROW(save_buffer_file(Buffer(wide_numbers(150)), {.path = folder.file("deep.exr")}, ctx),
+               Cancelled);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("deep.exr")));
+  const std::string whole = saved(lists(150), folder);
+  EXPECT_THROW(read_deep_file(whole, "deep.exr", 0, ctx), Cancelled);
+}
+
+// A band of 64 rows of 17 pixels: a count and a pointer a channel for each, and the numbers that are narrowed.
+TEST(LoadFragments, AWriterAsksForTheMemoryOfABand) {
+  const test::TempFolder folder;
+  const Ref<Fragments> f = wide_numbers(150);
+  Context ctx;
+  save_buffer_file(Buffer(f), {.path = folder.file("deep.exr")}, ctx);
+  const std::uint64_t pixels = 64 * 17, lists = pixels * (4 + 8 * f->channels.size());
+  EXPECT_GT(ctx.claimed(), lists + f->count() / 3 * 4);
+  EXPECT_LT(ctx.claimed(), lists + f->count() * 4);
+
+  const test::TempFolder other;
+  Context poor;
+  poor.admit = [&](std::uint64_t all) {
+    if (all > lists) throw NodeError("memory", "too much");
+  };
+  EXPECT_THROW(save_buffer_file(Buffer(f), {.path = other.file("deep.exr")}, poor), NodeError);
+  EXPECT_FALSE(std::filesystem::exists(other.file("deep.exr")));
 }
 
 TEST(LoadFragments, SeveralSamplesAPixelDoNotGoIntoTheFormat) {
