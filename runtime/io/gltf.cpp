@@ -4,6 +4,7 @@
 #include "nodes/kernels/vector.h"
 #include "runtime/core/error.h"
 #include "runtime/core/node_type.h"
+#include "runtime/io/first_row.h"
 #include "runtime/io/gltf_file.h"
 #include "runtime/io/gltf_material.h"
 #include "runtime/io/gltf_primitive.h"
@@ -25,30 +26,14 @@ namespace {
 
 using namespace gltf;
 
-// One primitive of one instance, and where its vertices and faces go.
+// One primitive of one instance, and where its vertices and faces go. Primitives that differ in faces and material only
+// have their vertices once, with the first of them: exporters give all materials of a mesh one vertex buffer.
 struct Part {
   const Primitive* primitive;
   Placement world;
   bool mirrored, moved;
+  bool shares;  // its vertices are those of the part before
   std::size_t vertex, face;
-};
-
-constexpr std::size_t no_row = ~std::size_t{0};
-
-// The first row of a range that something is wrong with, found in parallel.
-class FirstRow {
- public:
-  void offer(std::size_t row) {
-    std::size_t now = first_.load(std::memory_order_relaxed);
-    while (row < now && !first_.compare_exchange_weak(now, row, std::memory_order_relaxed)) {
-    }
-  }
-  std::optional<std::size_t> row() const {
-    return first_ == no_row ? std::nullopt : std::optional(first_.load());
-  }
-
- private:
-  std::atomic<std::size_t> first_{no_row};
 };
 
 template <class R>
@@ -98,15 +83,24 @@ class Assembler {
       auto& of = primitives_[instance.mesh];
       if (std::exchange(read[instance.mesh], char{1}) == 0)
         of = read_primitives(meshes[instance.mesh], file_, data_, materials_.size(), quantized, notes_);
-      for (const Primitive& p : of) add_part(p, instance.world_from_mesh);
+      const Primitive* before = nullptr;
+      for (const Primitive& p : of) {
+        const bool shares = before != nullptr && before->same_vertices(p) &&
+                            (!p.color || alpha_counts(*before) == alpha_counts(p));
+        add_part(p, instance.world_from_mesh, shares);
+        before = &p;
+      }
     }
   }
 
-  void add_part(const Primitive& p, const Placement& world) {
+  void add_part(const Primitive& p, const Placement& world, bool shares) {
     const auto& l = world.linear;
     const bool moved = l != glm::dmat3(1) || world.translation != glm::dvec3(0);
-    parts_.push_back({&p, world, kernels::determinant_sign(l[0], l[1], l[2]) < 0, moved, vertices_, faces_});
-    vertices_ += p.vertices(), faces_ += p.triangles();
+    const std::size_t vertex = shares ? parts_.back().vertex : vertices_;
+    parts_.push_back(
+        {&p, world, kernels::determinant_sign(l[0], l[1], l[2]) < 0, moved, shares, vertex, faces_});
+    if (!shares) vertices_ += p.vertices();
+    faces_ += p.triangles();
     if (!p.normal) facets_ += p.triangles();
     if (p.color) color_width_ = std::max(color_width_, p.color->width == 4 && alpha_counts(p) ? 4 : 3);
     for (const auto& [set, accessor] : p.uv) uv_sets_.insert(set);
@@ -222,6 +216,7 @@ class Assembler {
     auto* all = column->template values<Vec3>().data();
     for (const Part& p : parts_) {
       ctx_.poll();
+      if (p.shares) continue;
       Vec3* out = all + p.vertex;
       FirstRow wrong;
       read_rows<R, 3>(p.primitive->position, file_, &out->x, [&](std::size_t begin, std::size_t end) {
@@ -278,12 +273,18 @@ class Assembler {
     return none;
   }
 
-  // The area-weighted mean of the faces around, where a normal is 0; up where that is 0 too.
-  void mend(const Part& p, std::span<const glm::uvec3> triangle, std::span<const Vec3> position,
-            Vec3* out) const {
+  // The end of the faces of all parts that share the vertices of parts_[i].
+  std::size_t end_of_faces(std::size_t i) const {
+    while (i + 1 < parts_.size() && parts_[i + 1].shares) ++i;
+    return parts_[i].face + parts_[i].primitive->triangles();
+  }
+
+  // The area-weighted mean of the faces around, up to `end_face`, where a normal is 0; up where that is 0 too.
+  void mend(const Part& p, std::size_t end_face, std::span<const glm::uvec3> triangle,
+            std::span<const Vec3> position, Vec3* out) const {
     const std::size_t n = p.primitive->vertices();
     std::vector<glm::dvec3> sum(n, glm::dvec3(0));
-    for (std::size_t f = p.face; f < p.face + p.primitive->triangles(); ++f) {
+    for (std::size_t f = p.face; f < end_face; ++f) {
       const glm::dvec3 normal = face_cross(triangle[f], position);
       for (glm::length_t c = 0; c < 3; ++c) sum[triangle[f][c] - p.vertex] += normal;
     }
@@ -304,14 +305,15 @@ class Assembler {
                                      by_corner ? 3 * faces_ : vertices_);
     auto* all = column->template values<Vec3>().data();
     std::vector<Vec3> own;
-    for (const Part& p : parts_) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
       ctx_.poll();
+      const Part& p = parts_[i];
       const Primitive& from = *p.primitive;
-      if (from.normal) {
+      if (from.normal && !p.shares) {
         if (by_corner) own.resize(from.vertices());
         Vec3* out = by_corner ? own.data() : all + p.vertex;
         const std::size_t none = vertex_normals(p, out);
-        if (none != 0) mend(p, triangle, position, out);
+        if (none != 0) mend(p, end_of_faces(i), triangle, position, out);
         mended_ += none;
       }
       if (!by_corner) continue;
@@ -337,6 +339,7 @@ class Assembler {
     auto column = Column::make<Vec2>(uv_column_name(set), Domain::vertex, vertices_);
     auto* all = column->template values<Vec2>().data();
     for (const Part& p : parts_) {
+      if (p.shares) continue;
       Vec2* out = all + p.vertex;
       const auto at = p.primitive->uv.find(set);
       if (at == p.primitive->uv.end()) {
@@ -356,6 +359,7 @@ class Assembler {
     auto column = Column::make<Color>("color", Domain::vertex, vertices_);
     auto* all = column->template values<Color>().data();
     for (const Part& p : parts_) {
+      if (p.shares) continue;
       Color* out = all + p.vertex;
       const auto& from = p.primitive->color;
       if (!from)

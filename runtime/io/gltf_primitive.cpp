@@ -114,7 +114,18 @@ class Reader {
   Notes& notes_;
 };
 
+bool same(const std::optional<Accessor>& a, const std::optional<Accessor>& b) {
+  return a.has_value() == b.has_value() && (!a || a->path == b->path);
+}
+
 }  // namespace
+
+bool Primitive::same_vertices(const Primitive& other) const {
+  return position.path == other.position.path && same(normal, other.normal) && same(color, other.color) &&
+         std::equal(uv.begin(), uv.end(), other.uv.begin(), other.uv.end(), [](const auto& a, const auto& b) {
+           return a.first == b.first && a.second.path == b.second.path;
+         });
+}
 
 std::vector<Primitive> read_primitives(const Object& mesh, const FilePath& file, Data& data,
                                        std::size_t materials, bool quantized, Notes& notes) {

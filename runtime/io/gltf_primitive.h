@@ -22,6 +22,8 @@ struct Primitive {
   std::optional<std::size_t> material;
 
   std::size_t vertices() const { return position.count; }
+  // Whether all attributes that are read come from the same accessors.
+  bool same_vertices(const Primitive& other) const;
   std::size_t corners() const { return index ? index->count : position.count; }
   std::size_t triangles() const {
     if (mode == Mode::triangles) return corners() / 3;

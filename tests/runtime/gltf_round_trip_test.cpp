@@ -130,6 +130,7 @@ TEST_P(RoundTrip, MaterialsComeBack) {
   for (std::size_t i = 0; i < mesh.materials->materials.size(); ++i)
     expect_same(mesh.materials->materials[i], back.materials->materials[i]);
   EXPECT_EQ(back.materials->materials[2].texture, back.materials->materials[4].texture) << "written once";
+  EXPECT_EQ(back.vertices(), mesh.vertices()) << "six materials, and each vertex once";
   for (std::size_t f = 0; f < mesh.faces(); ++f)
     for (glm::length_t c = 0; c < 3; ++c)
       EXPECT_EQ(back.at("position").values<glm::vec3>()[back.triangles()[f][c]],

@@ -184,6 +184,48 @@ TEST(Gltf, NormalsWithoutLengthAreMended) {
   EXPECT_THAT(warnings(ctx), HasSubstr("2 normals have no length"));
 }
 
+// Four corners of a square, of two triangles in primitives of their own; none of the normals has a length.
+GltfMaker halves() {
+  GltfMaker g;
+  const std::size_t p = g.accessor<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 1}, "VEC3");
+  const std::size_t n = g.accessor<float>(std::vector<float>(12, 0.0F), "VEC3");
+  const std::size_t c = g.accessor<std::uint8_t>(std::vector<std::uint8_t>(16, 51), "VEC4", true);
+  const auto primitive = [&](const std::vector<std::uint8_t>& corners, int material) {
+    return Tree{{"attributes", {{"POSITION", p}, {"NORMAL", n}, {"COLOR_0", c}}},
+                {"indices", g.accessor<std::uint8_t>(corners, "SCALAR")},
+                {"material", material}};
+  };
+  g.document["materials"] = {{{"name", "a"}}, {{"name", "b"}}};
+  g.node({{"mesh", g.mesh(primitive({0, 1, 2}, 0))}});
+  g.document["meshes"][0]["primitives"].push_back(primitive({0, 2, 3}, 1));
+  return g;
+}
+
+TEST(Gltf, PrimitivesOfTheSameAccessorsShareTheirVertices) {
+  GltfMaker g = halves();
+  const Mesh m = read(g.glb()).mesh;
+  EXPECT_EQ(m.vertices(), 4u);
+  EXPECT_EQ(faces(m), (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_THAT(m.at("material").values<std::uint32_t>(), ElementsAre(0u, 1u));
+  // Corner 0 is of both: the mean of (0, 0, 1) and of the second's cross product (1, -1, 1).
+  EXPECT_NEAR(glm::distance(column3(m, "normal")[0], glm::vec3(1, -1, 2) / std::sqrt(6.0F)), 0, 1e-6);
+
+  g.node({{"mesh", 0}, {"translation", {1, 0, 0}}});
+  const Mesh twice = read(g.glb()).mesh;
+  EXPECT_EQ(faces(twice), (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}));
+  EXPECT_EQ(column3(twice, "position")[7], glm::vec3(1, 1, 1));
+}
+
+TEST(Gltf, PrimitivesWhoseOpacityIsReadDifferentlyDoNotShareVertices) {
+  GltfMaker g = halves();
+  g.document["materials"][1]["alphaMode"] = "BLEND";
+  const Mesh m = read(g.glb()).mesh;
+  EXPECT_EQ(m.vertices(), 8u);
+  const auto color = m.at("color").values<glm::vec4>();
+  EXPECT_EQ(color[0].a, 1);
+  EXPECT_FLOAT_EQ(color[4].a, 0.2F);
+}
+
 // ----- materials
 
 Material material_of(Tree material, std::string* said = nullptr) {

@@ -153,6 +153,24 @@ TEST(Run, SavesWholeBuffersBesidePictures) {
     }
 }
 
+// A writer's memory comes on top of all buffers that live, not of the saved one alone.
+TEST(Run, AWriterIsRefusedWhatTheRunHasNoMemoryFor) {
+  GraphMaker g = diamond();
+  g.output("statistics", "sum", "sum.json");
+  g.graph.outputs[0].whole = true;
+  const auto run = [&](std::uint64_t writer, std::uint64_t limit) {
+    RunOptions o{.demand = {.ports = {g.port("sum"), g.port("soft")}, .outputs = {0}}, .memory = limit};
+    o.save_buffer = [&](const Buffer&, const SaveRequest& r) { r.admit(writer); };
+    return run_graph(g.graph, o);
+  };
+  const std::uint64_t gib = std::uint64_t{1} << 30;
+  EXPECT_EQ(run(gib - 1, 2 * gib).end, RunResult::End::done);
+  const RunResult r = run(gib - 1, gib);
+  EXPECT_EQ(r.end, RunResult::End::failed);
+  ASSERT_FALSE(r.problems.empty());
+  EXPECT_EQ(r.problems.list()[0].code, "memory");
+}
+
 TEST(Run, FilesNameTheGraphThatMadeThem) {
   const auto metadata = [](const GraphMaker& maker) {
     GraphMaker g = maker;
