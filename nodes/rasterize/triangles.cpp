@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include "nodes/rasterize.h"
-#include "runtime/buffers/image.h"
-#include "runtime/buffers/pattern.h"
-#include "runtime/buffers/screen_view.h"
+#include "runtime/buffers/face_finder.h"
 #include "runtime/buffers/transparency.h"
-#include "runtime/core/node_type.h"
 
 namespace frustum {
 namespace {
@@ -22,22 +19,7 @@ struct Outputs {
   Tiled<Depth> depth;
 };
 
-template <class R>
-struct Filler {
-  ScreenView<R> view;
-  Ref<SamplePattern> pattern;
-  TriangleRasterizer<R> rasterizer;
-};
-using State = std::variant<Filler<float>, Filler<double>>;
-
-template <class R>
-Filler<R> make_filler(const Inputs& in, Rect window, Context& ctx) {
-  ScreenView<R> view(in.mesh);
-  Ref<SamplePattern> pattern = in.pattern.value_or(nullptr);
-  TriangleRasterizer<R> rasterizer(view.triangles(), sample_positions(pattern.get()), pixel_rect(window),
-                                   depth_order(*in.mesh), [&ctx](std::uint64_t bytes) { ctx.claim(bytes); });
-  return {std::move(view), std::move(pattern), std::move(rasterizer)};
-}
+using State = FaceFinders<TriangleRasterizer<float>, TriangleRasterizer<double>>;
 
 constexpr std::string_view transparency_name = "transparency",
                            one_is_kept =
@@ -73,24 +55,15 @@ void report(const kernels::TriangleBins& bins, const Mesh& mesh, Context& ctx) {
 }
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params&, Context& ctx) {
-  const Rect window = picture_window(*in.mesh);
-  return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
-    Filler<R> filler = make_filler<R>(in, window, ctx);
-    report(filler.rasterizer.bins(), *in.mesh, ctx);
-    Frame visibility = visibility_frame<R>(window, filler.pattern);
-    Frame depth = depth_frame<R>(window, filler.pattern);
-    return {std::move(filler), {std::move(visibility), std::move(depth)}};
+  return prepare_finder<State, Outputs>(in, ctx, [&]<class R>(const FinderScene<R>& s) {
+    TriangleRasterizer<R> rasterizer(s.mesh, s.pattern, s.window, s.order, s.claim);
+    report(rasterizer.bins(), *in.mesh, ctx);
+    return rasterizer;
   });
 }
 
 void tile(const State& state, const TilesOf<Inputs>&, const TilesOf<Outputs>& out, Arena& arena) {
-  std::visit(
-      [&]<class R>(const Filler<R>& filler) {
-        fill_visibility<R>(out[&Outputs::visibility], out[&Outputs::depth], arena,
-                           [&](kernels::PixelRect rect, kernels::PlaneView<std::uint32_t> id,
-                               kernels::PlaneView<R> z) { filler.rasterizer.fill(rect, id, z); });
-      },
-      state);
+  fill_faces(state, out, arena);
 }
 
 }  // namespace

@@ -29,15 +29,10 @@ struct Outputs {
   Tiled<Image> image;
 };
 
-struct State {
-  Params look;
-  PlacePlanes places;
-  Precision precision;
-};
+using State = SpaceTexture<Params>;
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
-  return {State{p, read_places(in.points, p.domain, p.bounded, ctx.precision), ctx.precision},
-          {color_frame(in.points.frame(), ctx.precision)}};
+  return prepare_space_texture<Outputs>(in, p, ctx);
 }
 
 template <class R>

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include "nodes/visibility.h"
+#include "runtime/buffers/face_finder.h"
 #include "runtime/buffers/paint_order.h"
-#include "runtime/buffers/pattern.h"
-#include "runtime/buffers/screen_view.h"
-#include "runtime/core/node_type.h"
 
 namespace frustum {
 namespace {
@@ -24,17 +22,19 @@ struct Outputs {
   Tiled<Depth> depth;
 };
 
-template <class R>
+// The painter, and what keeps its pieces.
+template <std::floating_point R>
 struct Canvas {
-  ScreenView<R> view;
   Ref<PaintOrder> order;
-  Ref<SamplePattern> pattern;
   PiecePainter<R> painter;
+
+  void fill(kernels::PixelRect rect, kernels::PlaneView<std::uint32_t> id, kernels::PlaneView<R> z) const {
+    painter.fill(rect, id, z);
+  }
 };
-using State = std::variant<Canvas<float>, Canvas<double>>;
+using State = FaceFinders<Canvas<float>, Canvas<double>>;
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
-  const Rect window = picture_window(*in.mesh);
   if (in.order->faces != in.mesh->faces())
     throw NodeError(
         "wrong_mesh",
@@ -43,26 +43,14 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   const std::size_t all = in.order->pieces.size();
   const std::size_t count = p.first ? std::min(all, static_cast<std::size_t>(*p.first)) : all;
   ctx.count("pieces_painted", count);
-  return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
-    ScreenView<R> view(in.mesh);
-    Ref<SamplePattern> pattern = in.pattern.value_or(nullptr);
-    PiecePainter<R> painter(view.triangles(), sample_positions(pattern.get()), pixel_rect(window),
-                            depth_order(*in.mesh), in.order->scene(), count,
-                            [&ctx](std::uint64_t bytes) { ctx.claim(bytes); });
-    Frame visibility = visibility_frame<R>(window, pattern), depth = depth_frame<R>(window, pattern);
-    return {Canvas<R>{std::move(view), in.order, std::move(pattern), std::move(painter)},
-            {std::move(visibility), std::move(depth)}};
+  return prepare_finder<State, Outputs>(in, ctx, [&]<class R>(const FinderScene<R>& s) {
+    return Canvas<R>{
+        in.order, PiecePainter<R>(s.mesh, s.pattern, s.window, s.order, in.order->scene(), count, s.claim)};
   });
 }
 
 void tile(const State& state, const TilesOf<Inputs>&, const TilesOf<Outputs>& out, Arena& arena) {
-  std::visit(
-      [&]<class R>(const Canvas<R>& canvas) {
-        fill_visibility<R>(out[&Outputs::visibility], out[&Outputs::depth], arena,
-                           [&](kernels::PixelRect rect, kernels::PlaneView<std::uint32_t> id,
-                               kernels::PlaneView<R> z) { canvas.painter.fill(rect, id, z); });
-      },
-      state);
+  fill_faces(state, out, arena);
 }
 
 }  // namespace

@@ -1,9 +1,7 @@
 #include "nodes/visibility/scanline.h"
 
 #include "nodes/visibility.h"
-#include "runtime/buffers/pattern.h"
-#include "runtime/buffers/screen_view.h"
-#include "runtime/core/node_type.h"
+#include "runtime/buffers/face_finder.h"
 
 namespace frustum {
 namespace {
@@ -18,36 +16,18 @@ struct Outputs {
   Tiled<Depth> depth;
 };
 
-template <class R>
-struct Lines {
-  ScreenView<R> view;
-  Ref<SamplePattern> pattern;
-  scanline::Scanner<R> scanner;
-};
-using State = std::variant<Lines<float>, Lines<double>>;
+using State = FaceFinders<scanline::Scanner<float>, scanline::Scanner<double>>;
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params&, Context& ctx) {
-  const Rect window = picture_window(*in.mesh);
-  return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
-    ScreenView<R> view(in.mesh);
-    Ref<SamplePattern> pattern = in.pattern.value_or(nullptr);
-    scanline::Scanner<R> scanner(view.triangles(), sample_positions(pattern.get()), pixel_rect(window),
-                                 depth_order(*in.mesh), [&ctx](std::uint64_t bytes) { ctx.claim(bytes); });
+  return prepare_finder<State, Outputs>(in, ctx, [&]<class R>(const FinderScene<R>& s) {
+    scanline::Scanner<R> scanner(s.mesh, s.pattern, s.window, s.order, s.claim);
     ctx.count("triangle_bin_pairs", scanner.bins().entries.size());
-    Frame visibility = visibility_frame<R>(window, pattern), depth = depth_frame<R>(window, pattern);
-    return {Lines<R>{std::move(view), std::move(pattern), std::move(scanner)},
-            {std::move(visibility), std::move(depth)}};
+    return scanner;
   });
 }
 
 void tile(const State& state, const TilesOf<Inputs>&, const TilesOf<Outputs>& out, Arena& arena) {
-  std::visit(
-      [&]<class R>(const Lines<R>& lines) {
-        fill_visibility<R>(out[&Outputs::visibility], out[&Outputs::depth], arena,
-                           [&](kernels::PixelRect rect, kernels::PlaneView<std::uint32_t> id,
-                               kernels::PlaneView<R> z) { lines.scanner.fill(rect, id, z); });
-      },
-      state);
+  fill_faces(state, out, arena);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "nodes/kernels/noise.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/real_rows.h"
+#include "runtime/core/node_type.h"
 
 #include <glm/vec3.hpp>
 
@@ -64,6 +65,22 @@ inline Frame color_frame(const Frame& points, Precision precision) {
           .planes = {{"R", kind}, {"G", kind}, {"B", kind}, {"A", kind}},
           .color_space = std::string(linear_rec709),
           .alpha = Alpha::premultiplied};
+}
+
+// A texture of mixes between two colours while it fills tiles: its node's parameters, which name `domain`, `bounded`,
+// `low` and `high`, and the planes it reads.
+template <class Params>
+struct SpaceTexture {
+  Params look;
+  PlacePlanes places;
+  Precision precision;
+};
+
+template <class Outputs, class Params, class Inputs>
+Prepared<SpaceTexture<Params>, Outputs> prepare_space_texture(const Inputs& in, const Params& p,
+                                                              Context& ctx) {
+  return {{p, read_places(in.points, p.domain, p.bounded, ctx.precision), ctx.precision},
+          {color_frame(in.points.frame(), ctx.precision)}};
 }
 
 // Fills a tile with low + mix (high - low), alpha 1; transparent black where nothing is seen. mix_row(rows,
