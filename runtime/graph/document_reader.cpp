@@ -87,10 +87,10 @@ void DocumentReader::read_params(const Json& file) {
   for (const auto& [name, value] : params->items()) {
     const std::string pointer = child_pointer("/params", name);
     if (!good_id(name, pointer, "a graph parameter")) continue;
-    each_dollar(value, pointer, [&](const std::string& text, const std::string& at) {
+    each_dollar(value, pointer, [&, &of = name](const std::string& text, const std::string& at) {
       problem({.code = "unknown_parameter",
                .pointer = at,
-               .message = fmt::format("the default of '{}' cannot take another parameter: '{}'", name, text),
+               .message = fmt::format("the default of '{}' cannot take another parameter: '{}'", of, text),
                .expected = R"(a value, or a text that begins with "$$")",
                .got = text,
                .suggestions = {"$" + text}});
