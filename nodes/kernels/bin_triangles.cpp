@@ -3,8 +3,7 @@
 #include <memory>
 #include <numeric>
 
-#include <tbb/parallel_for.h>
-
+#include "nodes/kernels/parallel.h"
 #include "nodes/kernels/simd/box_triangles.h"
 
 namespace frustum::kernels {
@@ -70,8 +69,8 @@ class Binner {
   }
 
   template <class F>
-  void each_chunk(F&& f) {
-    tbb::parallel_for(std::size_t{0}, chunks_.size(), f);
+  void each_chunk(const F& f) {
+    parallel_each(chunks_.size(), f);
   }
 
   std::size_t bin_count() const {

@@ -2,9 +2,6 @@
 // Loops over blocks of fixed size: what each block does depends on its number alone, so that any number of
 // threads gives the same bytes.
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -14,6 +11,17 @@
 
 namespace frustum::kernels {
 
+// Calls call(body, k) for every k below n, in parallel. What a call throws comes out, and those not yet begun are
+// left.
+void parallel_calls(std::size_t n, void (*call)(const void* body, std::size_t k), const void* body);
+
+// Calls body(k) for every k below n, each as its own task.
+template <class Body>
+void parallel_each(std::size_t n, const Body& body) {
+  parallel_calls(
+      n, [](const void* b, std::size_t k) { (*static_cast<const Body*>(b))(k); }, &body);
+}
+
 // Calls body(begin, end) for [0, block), [block, 2 block), ... below n; in parallel where there is more than
 // one. What a body throws comes out, and blocks not yet begun are left.
 template <class Body>
@@ -22,8 +30,8 @@ void parallel_blocks(std::size_t n, std::size_t block, const Body& body) {
     if (n > 0) body(std::size_t{0}, n);
     return;
   }
-  tbb::parallel_for(std::size_t{0}, (n + block - 1) / block,
-                    [&](std::size_t k) { body(k * block, std::min(n, (k + 1) * block)); });
+  parallel_each((n + block - 1) / block,
+                [&](std::size_t k) { body(k * block, std::min(n, (k + 1) * block)); });
 }
 
 // Elements of the usual block: enough work to hide the cost of handing it over.

@@ -3,9 +3,6 @@
 // resampling carry attributes. Topology makes the weights; applying them knows nothing of it.
 // Source: OpenSubdiv's stencil tables.
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +12,8 @@
 #include <span>
 #include <type_traits>
 #include <vector>
+
+#include "nodes/kernels/parallel.h"
 
 namespace frustum::kernels {
 
@@ -80,8 +79,8 @@ constexpr std::size_t rows_per_task = 2048;
 template <class T>
 void apply_affine(const Stencils& stencils, std::span<const T> in, std::span<T> out) {
   using Wide = typename stencil_detail::Wide<T>::type;
-  const auto rows = [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+  parallel_blocks(out.size(), stencil_detail::rows_per_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i != end; ++i) {
       const auto source = stencils.sources(i);
       const auto weight = stencils.weights(i);
       if (source.empty()) {
@@ -93,24 +92,22 @@ void apply_affine(const Stencils& stencils, std::span<const T> in, std::span<T> 
       for (std::size_t j = 1; j < source.size(); ++j) sum += (Wide(in[source[j]]) - base) * weight[j];
       out[i] = T(base + sum);
     }
-  };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, out.size(), stencil_detail::rows_per_task), rows);
+  });
 }
 
 // Applies rows of any weights, such as those of derivatives: out[i] = sum w_j x_j, in double, rounded once.
 template <class T>
 void apply_linear(const Stencils& stencils, std::span<const T> in, std::span<T> out) {
   using Wide = typename stencil_detail::Wide<T>::type;
-  const auto rows = [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+  parallel_blocks(out.size(), stencil_detail::rows_per_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i != end; ++i) {
       const auto source = stencils.sources(i);
       const auto weight = stencils.weights(i);
       Wide sum(0);
       for (std::size_t j = 0; j < source.size(); ++j) sum += Wide(in[source[j]]) * weight[j];
       out[i] = T(sum);
     }
-  };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, out.size(), stencil_detail::rows_per_task), rows);
+  });
 }
 
 // For columns that cannot be mixed (numbers of things): the source of largest weight, the first of equals. An

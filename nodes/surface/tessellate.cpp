@@ -1,5 +1,6 @@
 #include "nodes/surface/tessellate.h"
 
+#include "nodes/kernels/parallel.h"
 #include "nodes/surface.h"
 #include "runtime/buffers/camera.h"
 #include "runtime/buffers/mesh.h"
@@ -7,7 +8,6 @@
 #include "runtime/core/node_type.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <atomic>
 
@@ -223,7 +223,7 @@ Ref<Mesh> build(Plan plan, const Surface& surface, Context& ctx) {
   const Numbering numbers(plan, surface.points.size());
   ctx.claim(bytes_of_patches(plan));
   std::vector<PatchMesh> meshes(plan.patches.size());
-  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t p) {
+  kernels::parallel_each(meshes.size(), [&](std::size_t p) {
     ctx.poll();
     meshes[p] = triangulate(plan.segments[p], plan.side_segments(p), numbers.first_inside[p],
                             [&](Side side, int i) { return numbers.on_side(plan.topology, p, side, i); });
@@ -235,7 +235,7 @@ Ref<Mesh> build(Plan plan, const Surface& surface, Context& ctx) {
   Columns<R> columns(numbers.count, first_face.back(), surface.space);
   place_shared_vertices<R>(plan, numbers, surface.points,
                            columns.position->template values<glm::vec<3, R>>());
-  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t p) {
+  kernels::parallel_each(meshes.size(), [&](std::size_t p) {
     ctx.poll();
     columns.write(meshes[p], plan.nets[p], static_cast<std::uint32_t>(p), numbers.first_inside[p],
                   first_face[p]);

@@ -140,6 +140,10 @@ bool Diagnostics::has_errors() const {
                      [](const Diagnostic& d) { return d.severity == Severity::error; });
 }
 
+void Diagnostics::add(const Diagnostics& more) {
+  list_.insert(list_.end(), more.list_.begin(), more.list_.end());
+}
+
 std::string to_text(const Diagnostics& diagnostics, bool color) {
   constexpr std::size_t most = 20;
   std::map<std::pair<Severity, std::string_view>, std::size_t> seen;

@@ -40,7 +40,7 @@ struct Diagnostic {
 class Diagnostics {
  public:
   void add(Diagnostic d) { list_.push_back(std::move(d)); }
-  void add(const Diagnostics& more) { list_.insert(list_.end(), more.list_.begin(), more.list_.end()); }
+  void add(const Diagnostics& more);
   bool has_errors() const;
   bool empty() const { return list_.empty(); }
   std::size_t size() const { return list_.size(); }
