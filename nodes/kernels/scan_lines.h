@@ -186,7 +186,7 @@ void Scanner<R>::decide(std::vector<const Face*>& active, std::size_t from, int 
   const std::size_t rivals = active.size();
   for (std::size_t i = from; i < rivals; ++i) {
     const Face* f = active[i];
-    const auto clear = [&](R z, int x) { return depth(*f, x, line) - z > f->band + best->band; };
+    const auto clear = [&, best = best](R z, int x) { return depth(*f, x, line) - z > f->band + best->band; };
     if (f != best && !(clear(z_begin, begin) && clear(depth(*best, last, line), last))) active.push_back(f);
   }
   if (active.size() == rivals && best == at_last) return show(*best, begin, end, line);

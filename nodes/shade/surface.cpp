@@ -380,7 +380,7 @@ class Filler {
     for (std::size_t k = 0; k < samples_; ++k) {
       if (k > 0 && s_.once_a_face) copy_first_sample(k, y);
       for (const auto& [begin, end] : runs_of(k)) {
-        const auto number = [&](std::size_t i) { return row_[i * samples_ + k] + begin; };
+        const auto number = [&, first = begin](std::size_t i) { return row_[i * samples_ + k] + first; };
         const kernels::ColorRows<R> out = out_rows(k, y, begin);
         PointRow<R> points = point_row<R>(s_, id_[k] + begin, number, reach_);
         const R* alpha = s_.alpha ? alpha_row(k) + begin : nullptr;
