@@ -90,7 +90,7 @@ void large_shininess(Trial& t) {
     const auto x = static_cast<float>(std::tan(2 * angle));
     const kernels::LightSetup<float> setup{lights, {x, 0, 1}, Highlight::blinn, kernels::Exponent<float>(n)};
     const float got = received(setup, vec3(0, 0, 1), vec3(0)).specular[0];
-    const Real want = exact([&] {
+    const Real want = exact([&, n = n] {
       const Real t2 = atan2(Real(x), Real(1.0));
       return exp(Real(n) * log(cos(t2 / Real(2.0))));
     });
