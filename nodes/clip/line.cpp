@@ -142,13 +142,16 @@ class Clipper {
 
   void clip(std::size_t segment, const Segment& s) {
     const auto part = clip_segment(s.from, s.to, planes_.row, [&](const Crossing& c) {
-      if (tell_ && !steps_.full())
+      if (tell_ && steps_.full())
+        steps_.leave_out();
+      else if (tell_)
         steps_.add(segment, planes_.name[c.plane], c.d_from, c.d_to, text_of(c.role), c.t, c.t_from, c.t_to);
     });
     const auto keep = part ? divided(*part) : std::nullopt;
     if (part && !keep) ++at_infinity_;
     if (keep) points_->at.push_back(keep->first), points_->at.push_back(keep->second);
     if (!part) ++gone_;
+    if (tell_ && ends_.full()) ends_.leave_out();
     if (!tell_ || ends_.full()) return;
     const auto name = [&](const std::optional<std::size_t>& plane) {
       return plane ? planes_.name[*plane] : "";
@@ -166,7 +169,7 @@ class Clipper {
       ctx.warn("points_at_infinity",
                fmt::format("{} segments were left out: an end has w = 0, or is not finite after the divide",
                            at_infinity_));
-    return {std::move(points_), ends_.table(), steps_.table()};
+    return {std::move(points_), ends_.table(ctx, 1), steps_.table(ctx, 2)};
   }
 
  private:

@@ -27,10 +27,11 @@ const MeshReader& reader_of(const FilePath& file) {
     if (reader.extension == kind) return reader;
     known.push_back(fmt::format(".{}", reader.extension));
   }
-  throw NodeError("unknown_format",
-                  fmt::format("{}: meshes are read from {} files, not from .{}", file.written,
-                              fmt::join(known, ", "), kind),
-                  at_param("file"));
+  throw NodeError(
+      "unknown_format",
+      fmt::format("{}: meshes are read from {} files, and this {}", file.written, fmt::join(known, ", "),
+                  kind.empty() ? "name has no ending" : fmt::format("is a .{}", kind)),
+      at_param("file"));
 }
 
 // What the mesh file names beside itself is part of what the result depends on.

@@ -151,7 +151,7 @@ class Merge {
       at += n;
       vertex += static_cast<std::uint32_t>(part.vertices());
     }
-    if (filled > 0 && is_real(s.kind))
+    if (filled > 0 && is_real(s.kind) && s.name != "transparency")  // without it faces are opaque
       ctx.warn("column_filled",
                fmt::format("column '{}' is 0 on {} of {} meshes, which have none{}", s.name, filled,
                            parts_.size(), s.name == "normal" ? "; mesh.normals makes normals" : ""));

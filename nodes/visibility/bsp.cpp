@@ -43,7 +43,7 @@ std::string text_of(const bsp::Node& n) {
   return fmt::format("plane of face {}", n.of);
 }
 
-Ref<Table> table_of(const bsp::Tree& tree, int rows) {
+Ref<Table> table_of(const bsp::Tree& tree, int rows, Context& ctx) {
   StepTable steps({{.name = "divider"},
                    {.name = "depth"},
                    {.name = "level"},
@@ -52,10 +52,12 @@ Ref<Table> table_of(const bsp::Tree& tree, int rows) {
                    {.name = "splits"}},
                   rows);
   for (const bsp::Node& n : tree.nodes) {
-    if (steps.full()) break;
-    steps.add(text_of(n), n.depth, n.pieces, n.low_pieces, n.high_pieces, n.splits);
+    if (steps.full())
+      steps.leave_out();
+    else
+      steps.add(text_of(n), n.depth, n.pieces, n.low_pieces, n.high_pieces, n.splits);
   }
-  return steps.table();
+  return steps.table(ctx, 1);
 }
 
 void report(const bsp::Tree& tree, Context& ctx) {
@@ -88,7 +90,7 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
     const bsp::Watch watch{[&] { ctx.poll(); }, [&](std::uint64_t bytes) { ctx.claim(bytes); }};
     const bsp::Tree tree = bsp::build(faces, window, {p.splitter, p.candidates}, watch);
     report(tree, ctx);
-    return {order_of(tree, faces, p.traversal == Traversal::front_to_back), table_of(tree, p.rows)};
+    return {order_of(tree, faces, p.traversal == Traversal::front_to_back), table_of(tree, p.rows, ctx)};
   });
 }
 

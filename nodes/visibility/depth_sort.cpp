@@ -61,14 +61,17 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
     StepTable steps({{.name = "first"}, {.name = "second"}, {.name = "event"}}, p.rows);
     const depth_sort::Watch watch{[&] { ctx.poll(); }, [&](std::uint64_t bytes) { ctx.claim(bytes); },
                                   [&](const depth_sort::Step& s) {
-                                    if (!steps.full()) steps.add(s.first, s.second, text_of(s.event));
+                                    if (steps.full())
+                                      steps.leave_out();
+                                    else
+                                      steps.add(s.first, s.second, text_of(s.event));
                                   }};
     auto order = std::make_shared<PaintOrder>();
     order->faces = static_cast<std::uint32_t>(faces.size());
     depth_sort::Sorter sorter(faces, window, watch);
     const auto counts = sorter.run([&](const kernels::Piece& piece) { order->add(piece); });
     report(counts, *order, ctx);
-    return {std::move(order), steps.table()};
+    return {std::move(order), steps.table(ctx, 1)};
   });
 }
 

@@ -43,15 +43,19 @@ void report(const painter::Order& order, Context& ctx) {
 }
 
 Ref<Table> steps_of(const painter::Order& order, std::span<const kernels::ScreenFace> faces, double sign,
-                    int rows) {
+                    int rows, Context& ctx) {
   StepTable steps({{.name = "face"}, {.name = "nearest"}, {.name = "farthest"}, {.name = "cycle"}}, rows);
-  for (std::size_t i = 0; i < order.face.size() && !steps.full(); ++i) {
+  for (std::size_t i = 0; i < order.face.size(); ++i) {
+    if (steps.full()) {
+      steps.leave_out();
+      continue;
+    }
     const kernels::ScreenFace& f = faces[order.face[i]];
     kernels::DepthRange d;
     for (const kernels::GridPoint& c : f.corner) d.add(f.depth.at(kernels::to_px(c)));
     steps.add(order.face[i], sign * d.least, sign * d.greatest, order.cycle[i]);
   }
-  return steps.table();
+  return steps.table(ctx, 1);
 }
 
 Outputs run(const Inputs& in, const Params& p, Context& ctx) {
@@ -67,7 +71,7 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
     auto order = std::make_shared<PaintOrder>();
     order->faces = static_cast<std::uint32_t>(faces.size());
     for (const std::uint32_t f : found.face) order->pieces.push_back({f, 0, 0});
-    return {std::move(order), steps_of(found, faces, static_cast<double>(sign), p.rows)};
+    return {std::move(order), steps_of(found, faces, static_cast<double>(sign), p.rows, ctx)};
   });
 }
 

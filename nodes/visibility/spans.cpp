@@ -32,7 +32,7 @@ void report(const scanline::Counts& counts, Context& ctx) {
   ctx.count("most_active", counts.most_active);
 }
 
-Ref<Table> table_of(const std::vector<scanline::Segment>& segments) {
+Ref<Table> table_of(const std::vector<scanline::Segment>& segments, Context& ctx) {
   StepTable table({{.name = "begin", .unit = "px"},
                    {.name = "end", .unit = "px"},
                    {.name = "active"},
@@ -40,7 +40,7 @@ Ref<Table> table_of(const std::vector<scanline::Segment>& segments) {
                    {.name = "comparisons"}},
                   std::numeric_limits<int>::max());
   for (const scanline::Segment& s : segments) table.add(s.begin, s.end, s.active, s.face, s.comparisons);
-  return table.table();
+  return table.table(ctx, 0);
 }
 
 Outputs run(const Inputs& in, const Params& p, Context& ctx) {
@@ -56,7 +56,7 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
                                        [&ctx](std::uint64_t bytes) { ctx.claim(bytes); });
     const auto survey = scanline::survey(scanner, pixel_rect(window), p.line, [&] { ctx.poll(); });
     report(survey.counts, ctx);
-    return {table_of(survey.segments)};
+    return {table_of(survey.segments, ctx)};
   });
 }
 

@@ -114,7 +114,7 @@ std::string value_text(const ParamType& type) {
       case Kind::integer: return "integers";
       case Kind::text: return "texts";
       case Kind::record: return "objects";
-      default: return fmt::format("of: {}", value_text(t));
+      default: return fmt::format("({})", value_text(t));
     }
   };
   switch (type.kind) {

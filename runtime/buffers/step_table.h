@@ -2,6 +2,9 @@
 #pragma once
 
 #include "runtime/buffers/value.h"
+#include "runtime/core/context.h"
+
+#include <fmt/format.h>
 
 #include <memory>
 #include <utility>
@@ -20,15 +23,24 @@ class StepTable {
 
   bool full() const { return table_->columns[0].numbers.size() >= limit_; }
 
+  // A row that is not made since the table is full.
+  void leave_out() { ++left_out_; }
+
   // A row: a number or a text for each column after the first, in order.
   template <class... Cells>
   void add(Cells&&... cells) {
-    if (full()) return;
+    if (full()) return leave_out();
     std::size_t column = 0;
     table_->columns[0].numbers.push_back(static_cast<double>(table_->columns[0].numbers.size() + 1));
     (put(table_->columns[++column], std::forward<Cells>(cells)), ...);
   }
-  Ref<Table> table() const { return table_; }
+  // The table, which is the node's output of that number; warns where somebody reads it and it does not hold all rows.
+  Ref<Table> table(Context& ctx, std::size_t output) const {
+    if (left_out_ > 0 && ctx.wants(output))
+      ctx.warn("table_cut", fmt::format("the table has the first {} of {} rows: 'rows' lists more", limit_,
+                                        limit_ + left_out_));
+    return table_;
+  }
 
  private:
   static void put(Table::Column& c, std::string text) { c.texts.push_back(std::move(text)); }
@@ -37,7 +49,7 @@ class StepTable {
   static void put(Table::Column& c, T number) { c.numbers.push_back(static_cast<double>(number)); }
 
   std::shared_ptr<Table> table_;
-  std::size_t limit_;
+  std::size_t limit_, left_out_ = 0;
 };
 
 }  // namespace frustum

@@ -20,8 +20,10 @@ struct Arguments {
 
 std::filesystem::path tree(const Arguments& args) {
   if (!args.root.empty()) {
-    if (std::filesystem::is_directory(args.root)) return args.root;
-    throw UsageError(fmt::format("new: --root {}: there is no such folder", args.root));
+    if (!std::filesystem::is_directory(args.root))
+      throw UsageError(fmt::format("new: --root {}: there is no such folder", args.root));
+    if (std::filesystem::is_directory(std::filesystem::path(args.root) / "nodes")) return args.root;
+    throw UsageError(fmt::format("new: --root {}: it is no source tree: it has no folder nodes/", args.root));
   }
   if (const auto here = source_root(".")) return *here;
   throw UsageError("new: no source tree around the current folder; name it with --root");

@@ -22,8 +22,11 @@ std::string shown(const Range& r, std::string_view unit) {
   const std::string u = unit.empty() ? "" : fmt::format(" {}", unit);
   const bool low = std::isfinite(r.low), high = std::isfinite(r.high);
   if (low && high)
-    return fmt::format("{}{} {} {}{}{}", r.open_low ? "above " : "", r.low, r.open_low ? "and" : "to",
-                       r.open_high ? "below " : "", r.high, u);
+    return fmt::format("{}{} {}{}{}{}", r.open_low ? "above " : "", r.low, r.open_low ? "and " : "to ",
+                       r.open_high  ? "below "
+                       : r.open_low ? "at most "
+                                    : "",
+                       r.high, u);
   if (low) return fmt::format("{} {}{}", r.open_low ? "above" : "at least", r.low, u);
   return fmt::format("{} {}{}", r.open_high ? "below" : "at most", r.high, u);
 }

@@ -49,7 +49,7 @@ std::shared_ptr<const Document> DocumentReader::read() {
     if (seed->is_number_unsigned())
       doc_->seed = seed->get<std::uint64_t>();
     else
-      wrong_type("/seed", "an integer of at least 0", *seed);
+      wrong_type("/seed", fmt::format("an integer from 0 to {}", ~std::uint64_t{0}), *seed);
   }
   object_at(file, "ui", "");
   read_params(file);

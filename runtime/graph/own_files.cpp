@@ -27,7 +27,7 @@ std::optional<Diagnostic> overwriting(const std::vector<std::string>& files, con
   return Diagnostic{
       .code = "overwrites_graph",
       .pointer = "",
-      .message = fmt::format("{} would write over {}, which the graph was read from", what, *own),
+      .message = fmt::format("{} would write over {}, which the graph reads", what, *own),
       .expected = "another file",
       .got = path};
 }

@@ -168,7 +168,9 @@ class Decoder {
 
   void real(const Slot<R>& slot) {
     const R v = in_.template real<R>(slot.type);
-    if (slot.finite && !std::isfinite(v) && in_.error.empty()) in_.error = fmt::format("{} is not finite", v);
+    if (slot.finite && !std::isfinite(v) && in_.error.empty())
+      in_.error = fmt::format("{} is not finite{}", v,
+                              sizeof(R) == 4 && std::isinf(v) ? ", or was beyond single precision" : "");
     slot.real[row_ * slot.stride] = v;
   }
 

@@ -140,5 +140,13 @@ TEST(NewNode, NothingIsOverwritten) {
   EXPECT_FALSE(fs::exists(folder.file("nodes/curve/arc.h")));
 }
 
+TEST(NewNode, AFolderWithoutNodesIsNoSourceTree) {
+  const test::TempFolder folder;
+  const auto r = test::frustum({"new", "curve.arc", "--root", folder.path()});
+  EXPECT_EQ(r.code, 2);
+  EXPECT_THAT(r.err, HasSubstr("it has no folder nodes/"));
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
 }  // namespace
 }  // namespace frustum

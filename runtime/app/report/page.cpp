@@ -21,7 +21,9 @@ std::string script_safe(const Json& data) {
   return out;
 }
 
-std::string escaped(std::string_view text) {
+// As text of a page: bytes that are no UTF-8 become replacement characters.
+std::string escaped(std::string_view raw) {
+  const std::string text = Json::parse(Json(raw).dump(-1, ' ', false, Json::error_handler_t::replace));
   std::string out;
   for (const char c : text) {
     if (c == '<')

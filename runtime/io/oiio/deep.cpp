@@ -13,6 +13,7 @@
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
+#include <ImfTestFile.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 
@@ -294,6 +295,10 @@ void write_rows(const Fragments& f, Imf::DeepScanLineOutputFile& out, PartialFil
 Fragments read_deep(const std::string& path, std::string_view name, int part, Context& ctx) {
   const File file{name, size_of(path, name)};
   try {
+    if (!name.ends_with(".exr") && !Imf::isOpenExrFile(path.c_str()))
+      throw NodeError("not_deep", fmt::format("{}: it is no EXR file, which alone holds lists of fragments: "
+                                              "io.load_image reads other pictures",
+                                              name));
     Imf::MultiPartInputFile in(path.c_str());
     if (part < 0 || part >= in.parts()) file.malformed(fmt::format("there is no subimage {}", part));
     return read_part(in, part, file, ctx);

@@ -55,13 +55,20 @@ void check_png(lib::Filesystem::IOProxy& bytes, const File& file) {
   bytes.seek(0);
 }
 
+// What the library says, without the question that it asks back.
+std::string why_not_open() {
+  const std::string said = one_line(lib::geterror());
+  if (said.find("could not find a format reader") == std::string::npos) return said;
+  return "it is no picture of a kind that is read";
+}
+
 std::unique_ptr<lib::ImageInput> open_input(const std::string& path, const File& file) {
   lib::Filesystem::IOFile bytes(path, lib::Filesystem::IOProxy::Read);
   check_png(bytes, file);
   lib::ImageSpec hints;
   hints.attribute("oiio:UnassociatedAlpha", 1);  // alpha is multiplied here, in floats and not in bytes
   auto input = lib::ImageInput::open(path, &hints);
-  if (!input) file.malformed(one_line(lib::geterror()));
+  if (!input) file.malformed(why_not_open());
   return input;
 }
 
@@ -86,7 +93,7 @@ std::unique_ptr<lib::ImageInput> open_memory(lib::Filesystem::IOMemReader& memor
   lib::Filesystem::IOProxy* proxy = &memory;
   hints.attribute("oiio:ioproxy", lib::TypeDesc::PTR, static_cast<void*>(&proxy));
   auto input = lib::ImageInput::open(fmt::format("memory.{}", format), &hints, proxy);
-  if (!input) file.malformed(one_line(lib::geterror()));
+  if (!input) file.malformed(why_not_open());
   return input;
 }
 
