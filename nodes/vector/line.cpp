@@ -7,19 +7,21 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 namespace frustum {
 namespace {
 
 struct Inputs {
   Ref<Points> through;
-  std::optional<Ref<Points>> asked;
+  std::optional<Ref<Points>> asked, other;
 };
 struct Params {
   std::vector<double> t{0, 0.25, 0.5, 0.75, 1};
 };
 struct Outputs {
   Ref<Points> points;
-  Ref<Table> forms, sides;
+  Ref<Table> forms, sides, meeting;
 };
 
 Table forms_of(const glm::dvec2& p, const glm::dvec2& q, Context& ctx) {
@@ -70,23 +72,53 @@ Table sides_of(const glm::dvec2& p0, const glm::dvec2& p1, std::span<const glm::
   return t;
 }
 
-Outputs run(const Inputs& in, const Params& p, Context& ctx) {
-  const auto& through = in.through->at;
-  if (through.size() != 2 || through[0] == through[1])
+using Line = std::array<glm::dvec2, 2>;
+
+Line line_of(const Points& points, const char* input) {
+  const auto& at = points.at;
+  if (at.size() != 2 || at[0] == at[1])
     throw NodeError("no_line",
                     fmt::format("a line takes two points at two places; there {} {}",
-                                through.size() == 1 ? "is" : "are", through.size()),
-                    at_input("through"));
-  const glm::dvec2 p0(through[0].x, through[0].y), p1(through[1].x, through[1].y);
-  if (p0 == p1)
+                                at.size() == 1 ? "is" : "are", at.size()),
+                    at_input(input));
+  const Line line{glm::dvec2(at[0].x, at[0].y), glm::dvec2(at[1].x, at[1].y)};
+  if (line[0] == line[1])
     throw NodeError("no_line", "the two points differ in z alone, and the plane of the line is x and y",
-                    at_input("through"));
+                    at_input(input));
+  return line;
+}
+
+// One row, or none.
+Table meeting_of(const Line& line, const std::optional<Line>& other, Context& ctx) {
+  Table t;
+  t.columns = {{.name = "x"}, {.name = "y"}, {.name = "t"}, {.name = "t_other"}, {.name = "condition"}};
+  if (!other) return t;
+  const auto& [q0, q1] = *other;
+  const auto m = vector::meeting_of(line[0], line[1], q0, q1);
+  if (!m) {
+    const bool same =
+        vector::side_of(line[0], line[1], q0) == 0 && vector::side_of(line[0], line[1], q1) == 0;
+    ctx.warn("parallel_lines", same ? "the two lines are one line: they meet everywhere"
+                                    : "the two lines are parallel, or meet where no number is");
+    return t;
+  }
+  const std::array row{m->at.x, m->at.y, m->t, m->s, m->condition};
+  for (std::size_t i = 0; i < row.size(); ++i) t.columns[i].numbers.push_back(row[i]);
+  return t;
+}
+
+Outputs run(const Inputs& in, const Params& p, Context& ctx) {
+  const auto& through = in.through->at;
+  const auto line = line_of(*in.through, "through");
+  const auto other = in.other ? std::optional(line_of(**in.other, "other")) : std::nullopt;
+  const auto& [p0, p1] = line;
   auto points = std::make_shared<Points>();
   for (const double t : p.t) points->at.push_back(vector::parametric(through[0], through[1], t));
   const std::span<const glm::dvec3> asked =
       in.asked ? std::span<const glm::dvec3>((*in.asked)->at) : std::span<const glm::dvec3>();
   return {std::move(points), std::make_shared<Table>(forms_of(p0, p1, ctx)),
-          std::make_shared<Table>(sides_of(p0, p1, asked, ctx))};
+          std::make_shared<Table>(sides_of(p0, p1, asked, ctx)),
+          std::make_shared<Table>(meeting_of(line, other, ctx))};
 }
 
 }  // namespace
@@ -94,17 +126,23 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
 NodeType nodes::vector_line() {
   return node("vector.line", run)
       .doc(
-          "Writes a line as explicit, implicit and parametric form, and says exactly on which side points "
-          "lie.")
+          "Writes a line as explicit, implicit and parametric form, says exactly on which side points lie, "
+          "and "
+          "where it meets another line.")
       .cite("Shewchuk 1997, Adaptive precision predicates; C++20 std::lerp (P0811); errata E3 and E4")
       .covers(5, 6, 7)
       .input("through", &Inputs::through, "Two points; the implicit and explicit forms are of x and y, y up.")
       .input("asked", &Inputs::asked, "Points whose side is asked for.")
+      .input("other", &Inputs::other, "Two points of another line, of x and y as well.")
       .param("t", &Params::t, "Where on the way from the first point (0) to the second (1) points are made.")
       .output("points", &Outputs::points, "p(t) for every t; p(1) is the second point bit for bit.")
       .output("forms", &Outputs::forms, "The coefficients; a vertical line has no explicit form.")
       .output("sides", &Outputs::sides,
-              "f, the exact side and whether above, and the side that plain arithmetic would give.");
+              "f, the exact side and whether above, and the side that plain arithmetic would give.")
+      .output(
+          "meeting", &Outputs::meeting,
+          "Where the other line meets this one, at which t of both, and 1 / |sin| of their angle, by which "
+          "rounding of the points is enlarged; without a row where they are parallel.");
 }
 
 }  // namespace frustum

@@ -2,6 +2,7 @@
 #include "nodes/kernels/predicates.h"
 #include "nodes/kernels/stencil.h"
 #include "nodes/kernels/vector.h"
+#include "nodes/vector/line.h"
 #include "nodes/vector/plane.h"
 #include "tests/hard/exact.h"
 #include "tests/hard/naive.h"
@@ -351,6 +352,64 @@ void plane_of_a_polygon(Trial& t) {
   t.price_over(triangles, by_three_corners, [](const Polygon& p) { return vector::plane_of(p)->normal; });
 }
 
+// Cramer's rule for the lines' equations a x + b y = c: c is the size of the coordinates squared.
+dvec2 by_cramer(const std::array<dvec2, 4>& p) {
+  const auto line = [](const dvec2& from, const dvec2& to) {
+    return dvec3(to.y - from.y, from.x - to.x, from.x * to.y - to.x * from.y);
+  };
+  const dvec3 l = line(p[0], p[1]), m = line(p[2], p[3]);
+  const double det = l.x * m.y - m.x * l.y;
+  if (det == 0) return dvec2(std::numeric_limits<double>::quiet_NaN());
+  return {(l.z * m.y - m.z * l.y) / det, (l.x * m.z - m.x * l.z) / det};
+}
+
+// Errors in units of u * condition * the largest coordinate that takes part.
+void judge_meeting(Trial& t, const std::array<dvec2, 4>& p) {
+  const auto way = [&](std::size_t from, std::size_t to, glm::length_t axis) {
+    return Rational(Rational(p[to][axis]) - Rational(p[from][axis]));
+  };
+  const Rational dx = way(0, 1, 0), dy = way(0, 1, 1), ex = way(2, 3, 0), ey = way(2, 3, 1);
+  const Rational area = dx * ey - dy * ex;
+  const auto got = vector::meeting_of(p[0], p[1], p[2], p[3]);
+  const std::initializer_list<double> witness{p[0].x, p[0].y, p[1].x, p[1].y, p[2].x, p[2].y, p[3].x, p[3].y};
+  if (sgn(area) == 0) return t.require(!got, "parallel lines do not meet", witness);
+  t.require(got.has_value(), "lines that are not parallel meet", witness);
+  if (!got) return;
+  const Rational s = (way(0, 2, 0) * ey - way(0, 2, 1) * ex) / area;
+  const Rational x = Rational(p[0].x) + s * dx, y = Rational(p[0].y) + s * dy;
+  const double lengths =
+      std::hypot(dx.get_d(), dy.get_d()) * std::hypot(ex.get_d(), ey.get_d()) / std::fabs(area.get_d());
+  t.require(std::fabs(got->condition - lengths) <= 1e-12 * lengths, "the condition is 1 / |sin|", witness);
+  double largest = std::max(std::fabs(x.get_d()), std::fabs(y.get_d()));
+  for (const dvec2& q : p) largest = std::max({largest, std::fabs(q.x), std::fabs(q.y)});
+  const Rational unit = Rational(largest) * Rational(lengths) * Rational(u64);
+  const auto off = [&](const dvec2& at) {
+    return std::max(distance(at.x, x, unit), distance(at.y, y, unit));
+  };
+  t.measure(off(by_cramer(p)), off(got->at), witness);
+}
+
+void nearly_parallel_lines(Trial& t) {
+  judge_meeting(t, {{{0, 0}, {1000, 1000}, {0, -1e-12}, {1000, 1000 * (1 + 1e-12) - 1e-12}}});
+  std::vector<std::array<dvec2, 4>> all;
+  for (std::size_t n = t.samples(300, 20000); n-- > 0;) {
+    const dvec2 from(t.random.magnitude(0, 27), t.random.magnitude(0, 27));
+    const dvec2 along(t.random.uniform(-2, 2), t.random.uniform(-2, 2)), across(-along.y, along.x);
+    const double turn = t.random.magnitude(-24, 0);
+    const dvec2 start = from + across * (turn * t.random.uniform());
+    all.push_back({from, from + along, start, start + along + across * turn});
+    judge_meeting(t, all.back());
+  }
+  // Parallel: on the grid, a multiple of the way, from anywhere.
+  for (std::size_t n = t.samples(100, 5000); n-- > 0;) {
+    const auto whole = [&](int bits) { return std::floor(t.random.magnitude(0, bits)); };
+    const dvec2 p(whole(40), whole(40)), q(whole(40), whole(40)), way(whole(20), whole(20));
+    if (way != dvec2(0)) judge_meeting(t, {p, p + way, q, q + way * (1 + std::fabs(whole(8)))});
+  }
+  t.price_over(all, by_cramer,
+               [](const std::array<dvec2, 4>& p) { return vector::meeting_of(p[0], p[1], p[2], p[3]); });
+}
+
 }  // namespace
 
 std::vector<HardCase> foundations() {
@@ -382,6 +441,10 @@ std::vector<HardCase> foundations() {
        "the area vector in rationals, its angle by MPFR",
        "angle <= 8 u cond, cond = perimeter^2 / area; corners on a line are degenerate", "u cond", 8,
        plane_of_a_polygon},
+      {"FND-10", "lines at 1e-12 rad; at 2^-24 rad and more, 2 long and up to 2^27 away; parallel ones",
+       "Cramer's rule for a x + b y = c", "vector::meeting_of", "rationals",
+       "within 8 u cond of the largest coordinate, cond = 1 / |sin|; parallel is decided exactly", "u cond",
+       8, nearly_parallel_lines},
       {"FND-12", "lines from +-1e8 to +-2^27, t = 0, 1 and between", "a + t (b - a) in float",
        "kernels::lerp", "rationals", "ends bit for bit; monotonic; within 2 ulp of the larger end",
        "ends missed", 0, point_of_a_line},

@@ -1,4 +1,5 @@
 // Sampling and reconstruction.
+#include "nodes/kernels/area_coverage.h"
 #include "nodes/kernels/filter.h"
 #include "nodes/kernels/random.h"
 #include "nodes/kernels/resolve.h"
@@ -15,6 +16,7 @@
 #include <array>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <vector>
 
 namespace frustum::hard {
@@ -237,6 +239,81 @@ void coverage_of_equal_samples(Trial& t) {
       });
 }
 
+// ----- areas
+
+using glm::dvec2;
+constexpr int area_edge = 6;  // px
+
+// The share of pixel (x, y) to the left of the line from `top` to `bottom`, which runs down through all of it.
+Rational share_left_of(const dvec2& top, const dvec2& bottom, int x, int y) {
+  // Between two rows the line is straight: the integral of clamp(x_line - x, 0, 1), in pieces at 0 and 1.
+  const Rational x0 = Rational(top.x), y0 = Rational(top.y);
+  const Rational slope = (Rational(bottom.x) - x0) / (Rational(bottom.y) - y0);
+  const auto at = [&](const Rational& v) { return Rational(x0 + (v - y0) * slope - x); };
+  std::vector<Rational> cuts{Rational(y), Rational(y + 1)};
+  if (sgn(slope) != 0)
+    for (const int side : {0, 1}) {
+      const Rational v = y0 + (x0 * -1 + x + side) / slope;
+      if (v > cuts[0] && v < cuts[1]) cuts.push_back(v);
+    }
+  std::sort(cuts.begin(), cuts.end());
+  Rational area = 0;
+  for (std::size_t i = 1; i < cuts.size(); ++i) {
+    const auto inside = [&](const Rational& v) {
+      return Rational(v < 0 ? Rational(0) : v > 1 ? Rational(1) : v);
+    };
+    area += (cuts[i] - cuts[i - 1]) * (inside(at(cuts[i - 1])) + inside(at(cuts[i]))) / 2;
+  }
+  return area;
+}
+
+std::vector<double> shares_of(std::span<const dvec2> contour) {
+  std::vector<kernels::AreaEdge> edges;
+  kernels::add_edges(edges, contour);
+  std::vector<double> all(area_edge * area_edge, 0.0);
+  kernels::AreaSweep sweep(std::move(edges), kernels::FillRule::nonzero, {0, 0, area_edge, area_edge});
+  sweep.rows([&](int y, std::span<const double> row) {
+    std::copy(row.begin(), row.end(), all.begin() + y * area_edge);
+  });
+  return all;
+}
+
+// 16 x 16 samples of a pixel, those on a border counted in: what is left (-1) or right (1) of the line.
+double counted(const dvec2& top, const dvec2& bottom, int x, int y, int side) {
+  int n = 0;
+  for (int j = 0; j < 16; ++j)
+    for (int i = 0; i < 16; ++i) {
+      const double v = y + (j + 0.5) / 16,
+                   line = top.x + (v - top.y) * ((bottom.x - top.x) / (bottom.y - top.y));
+      n += side * (x + i / 16.0 - line) >= 0;
+    }
+  return n / 256.0;
+}
+
+void abutting_areas(Trial& t) {
+  const auto judge = [&](const dvec2& top, const dvec2& bottom) {
+    const double end = area_edge;
+    const std::array left{dvec2(0, 0), top, bottom, dvec2(0, end)};
+    const std::array right{top, dvec2(end, 0), dvec2(end, end), bottom};
+    const auto a = shares_of(left), b = shares_of(right);
+    for (int y = 0; y < area_edge; ++y)
+      for (int x = 0; x < area_edge; ++x) {
+        const std::size_t i = static_cast<std::size_t>(y * area_edge + x);
+        const double naive = counted(top, bottom, x, y, -1) + counted(top, bottom, x, y, 1);
+        t.measure(distance(naive, Rational(1), Rational(u64)),
+                  std::fabs(Rational((Rational(a[i]) + Rational(b[i]) - 1) / Rational(u64)).get_d()),
+                  {top.x, bottom.x, static_cast<double>(x), static_cast<double>(y)});
+        t.require(distance(a[i], share_left_of(top, bottom, x, y), Rational(u64)) <= 16,
+                  "the exact area to 16 u",
+                  {top.x, bottom.x, static_cast<double>(x), static_cast<double>(y)});
+      }
+  };
+  for (const double x : {1.0, 2.5, 3 - 0x1p-20, 3 + 0x1p-20, 4.0625})
+    for (const double lean : {0.0, 0x1p-20, -0.5, 1.0}) judge({x, 0}, {x + lean, area_edge});
+  for (std::size_t n = t.samples(100, 5000); n-- > 0;)
+    judge({t.random.uniform(0.1, area_edge - 0.1), 0}, {t.random.uniform(0.1, area_edge - 0.1), area_edge});
+}
+
 }  // namespace
 
 std::vector<HardCase> sampling() {
@@ -256,6 +333,10 @@ std::vector<HardCase> sampling() {
        "rounded once in any order; one result for any threads", "ulp", 0.5, sum_in_any_order},
       {"SMP-13", "3 to 49 samples that are all 1, four filters", "sum of 1/N", "kernels::simd::resolve_row",
        "equality", "a full pixel is exactly 1", "pixels that are not", 0, coverage_of_equal_samples},
+      {"SMP-14", "an edge at k, k + 1/2, k + 1/16 and k +- 2^-20, upright and leaning; random ones",
+       "16 x 16 samples, those on the border inside", "kernels::AreaSweep", "areas in rationals",
+       "what two areas with one border cover adds up to 1 within 2 u; each share exact to 16 u", "u", 2,
+       abutting_areas},
   };
 }
 

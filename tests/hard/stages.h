@@ -26,6 +26,7 @@ std::vector<HardCase> triangles();
 std::vector<HardCase> depth();
 std::vector<HardCase> scanlines();
 std::vector<HardCase> orders();
+std::vector<HardCase> partitions();
 std::vector<HardCase> shading();
 std::vector<HardCase> shadows();
 std::vector<HardCase> texture();

@@ -77,6 +77,54 @@ TEST(VectorLine, EvaluatesTheImplicitFormNearFarAwayLines) {
   }
 }
 
+// ----- meeting
+
+// The point of p and the line through it that the other line's equation gives, with 113 bits.
+glm::dvec2 meeting_in_quad(const glm::dvec2& p0, const glm::dvec2& p1, const glm::dvec2& q0,
+                           const glm::dvec2& q1) {
+  const Quad dx = Quad(p1.x) - Quad(p0.x), dy = Quad(p1.y) - Quad(p0.y);
+  const Quad ex = Quad(q1.x) - Quad(q0.x), ey = Quad(q1.y) - Quad(q0.y);
+  const Quad t = ((Quad(q0.x) - Quad(p0.x)) * ey - (Quad(q0.y) - Quad(p0.y)) * ex) / (dx * ey - dy * ex);
+  return {static_cast<double>(Quad(p0.x) + t * dx), static_cast<double>(Quad(p0.y) + t * dy)};
+}
+
+TEST(VectorLine, MeetsAnotherLine) {
+  const auto m = vector::meeting_of({0, 0}, {4, 4}, {0, 2}, {4, -2});
+  ASSERT_TRUE(m);
+  EXPECT_EQ(m->at, glm::dvec2(1, 1));
+  EXPECT_EQ(m->t, 0.25);
+  EXPECT_EQ(m->s, 0.25);
+  EXPECT_DOUBLE_EQ(m->condition, 1) << "at a right angle";
+}
+
+TEST(VectorLine, KeepsTheDigitsOfAMeetingFarAway) {
+  std::mt19937_64 random(3);
+  for (int trial = 0; trial < 2000; ++trial) {
+    std::array<glm::dvec2, 4> p;
+    for (glm::dvec2& q : p) {
+      const glm::dvec3 r = test::random_row(random, 1);
+      q = {1e6 + r.x, -2e6 + r.y};
+    }
+    const auto m = vector::meeting_of(p[0], p[1], p[2], p[3]);
+    ASSERT_TRUE(m);
+    const glm::dvec2 want = meeting_in_quad(p[0], p[1], p[2], p[3]);
+    EXPECT_LE(std::fabs(m->at.x - want.x), test::ulp(want.x));
+    EXPECT_LE(std::fabs(m->at.y - want.y), test::ulp(want.y));
+  }
+}
+
+TEST(VectorLine, SaysExactlyWhatIsParallel) {
+  const double third = 1.0 / 3;
+  EXPECT_EQ(third * 0.75 - 1 * 0.25, 0) << "by rounded products they are parallel";
+  EXPECT_TRUE(vector::meeting_of({0, 0}, {third, 1}, {0, 1}, {0.25, 1.75})) << "but a third is rounded";
+  EXPECT_FALSE(vector::meeting_of({0, 0}, {1, 1}, {1e9, 0}, {1e9 + 1, 1}));
+  EXPECT_TRUE(vector::meeting_of({0, 0}, {1e9, 1e9}, {0, 1}, {1e9, 1e9 + 1 + 0x1p-22})) << "one ulp off";
+  EXPECT_FALSE(vector::meeting_of({1, 1}, {1, 1}, {0, 0}, {1, 0})) << "one point is no line";
+  EXPECT_FALSE(vector::meeting_of({0, 0}, {NAN, 1}, {0, 0}, {1, 0}));
+  EXPECT_TRUE(vector::meeting_of({0, 0}, {1e200, 1e200}, {0, 1e200}, {1e200, 0})) << "squares would overflow";
+  EXPECT_TRUE(vector::meeting_of({0, 0}, {1e-200, 1e-200}, {0, 1e-200}, {1e-200, 0})) << "and underflow";
+}
+
 // ----- parametric
 
 TEST(VectorLine, MeetsBothEndsBitForBitAndNeverTurnsBack) {
@@ -108,6 +156,29 @@ TEST(VectorLine, TellsItsFormsAndSides) {
   EXPECT_EQ(out.at(1).as<Table>()->columns[2].numbers.at(0), 0.5);
   EXPECT_THAT(out.at(2).as<Table>()->columns[3].texts, testing::ElementsAre("left", "on"));
   EXPECT_THAT(out.at(2).as<Table>()->columns[4].texts, testing::ElementsAre("above", "on"));
+}
+
+TEST(VectorLine, TellsWhereItMeetsAnother) {
+  const auto through = test::points({{0, 0, 0}, {4, 4, 0}}), across = test::points({{0, 2, 0}, {4, -2, 0}});
+  const auto run = [&](test::NodeInputs in, Context& ctx) {
+    return test::run_node(nodes::vector_line(), Json::object(), in, &ctx).at(3).as<Table>();
+  };
+  Context ctx, parallel, none;
+  const auto met = run({{through}, {}, {across}}, ctx);
+  ASSERT_EQ(met->columns.size(), 5u);
+  EXPECT_EQ(met->columns[0].numbers, std::vector<double>{1});
+  EXPECT_EQ(met->columns[2].numbers, std::vector<double>{0.25});
+  EXPECT_TRUE(ctx.warnings().empty());
+  for (const auto& [beside, text] : {std::pair(test::points({{0, 1, 0}, {4, 5, 0}}), "parallel"),
+                                     std::pair(test::points({{1, 1, 0}, {2, 2, 0}}), "one line")}) {
+    Context warned;
+    EXPECT_TRUE(run({{through}, {}, {beside}}, warned)->columns[0].numbers.empty());
+    ASSERT_EQ(warned.warnings().size(), 1u);
+    EXPECT_EQ(warned.warnings()[0].first, "parallel_lines");
+    EXPECT_THAT(warned.warnings()[0].second, testing::HasSubstr(text));
+  }
+  EXPECT_TRUE(run({{through}}, none)->columns[0].numbers.empty()) << "no other line, no row";
+  EXPECT_TRUE(none.warnings().empty());
 }
 
 TEST(VectorLine, WarnsOfVerticalLinesAndRefusesWhatIsNone) {
