@@ -53,6 +53,8 @@ void write_text(const fs::path& path, std::string_view text) {
   file.commit();
 }
 
+void require_writable(const fs::path& path) { const PartialFile never_finished(path.string()); }
+
 bool write_if_changed(const fs::path& path, std::string_view text) {
   std::error_code none;
   if (fs::is_regular_file(path, none) && read_text(path) == text) return false;

@@ -16,6 +16,10 @@ std::string read_text(const std::filesystem::path& path);
 // cannot.
 void write_text(const std::filesystem::path& path, std::string_view text);
 
+// Throws the WorldError that write_text would for this path, and leaves everything as it was: for results that are
+// dear to make.
+void require_writable(const std::filesystem::path& path);
+
 // Like write_text, but a file that already says this is not touched. True where something was written.
 bool write_if_changed(const std::filesystem::path& path, std::string_view text);
 

@@ -16,7 +16,7 @@ namespace {
 struct Arguments {
   GraphArguments graph;
   SweepOptions options;
-  std::string reference, markdown;
+  std::string reference;
 };
 
 // A line that is written over, on a terminal only.
@@ -32,6 +32,7 @@ int sweep(Arguments args, bool json) {
   o.load = load_options(args.graph);
   o.cancel = &cancel_flag();
   o.reference = assignments(args.reference);
+  if (o.folder.empty()) throw UsageError("--out is empty: name a folder, such as out/sweep");
   if (!o.reference.empty() && !o.reference_file.empty())
     throw UsageError("--reference and --reference-file exclude each other");
   const bool terminal = progress_on_stderr();
@@ -50,8 +51,8 @@ int sweep(Arguments args, bool json) {
   if (terminal) std::fputs("\r\x1b[K", stderr);
   if (!result) return fail(problems, json);
   const auto files = write_sweep(*result);
-  if (!args.markdown.empty() && !json) {
-    const std::filesystem::path target = args.markdown;
+  if (!o.markdown.empty() && !json) {
+    const std::filesystem::path target = o.markdown;
     return print(sweep_markdown(*result, target.parent_path(), target.filename().string())), done;
   }
   if (json) {
@@ -99,7 +100,7 @@ void add_sweep(CLI::App& app, Invocation& chosen) {
       ->check(quiet(CLI::Range(0, 4096)))
       ->type_name("N");
   c.add_flag("--resume", o.resume, "Go on with a sweep that was cut off.");
-  c.add_option("--markdown", args->markdown,
+  c.add_option("--markdown", o.markdown,
                "Prints a part of a page for docs/, whose pictures are written beside this path and begin "
                "with its name.")
       ->type_name("FOLDER/NAME");

@@ -1,5 +1,6 @@
 // frustum test SUITE...: runs suites and says what held.
 #include "runtime/app/files.h"
+#include "runtime/app/read_files.h"
 #include "runtime/app/suite/html.h"
 #include "runtime/app/suite/run.h"
 #include "runtime/cli/command.h"
@@ -11,8 +12,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 
 namespace frustum::cli {
@@ -55,14 +58,19 @@ class ScratchFolder {
 };
 
 Shard shard_of(const std::string& text) {
+  Shard shard;
   const auto slash = text.find('/');
-  if (slash == std::string::npos)
+  const auto part = [&](std::size_t from, std::size_t to, int& out) {
+    const char *begin = text.data() + from, *end = text.data() + to;
+    const auto [at, error] = std::from_chars(begin, end, out);
+    return error == std::errc() && at == end;
+  };
+  if (slash == std::string::npos || !part(0, slash, shard.index) ||
+      !part(slash + 1, text.size(), shard.count))
     throw UsageError(fmt::format("--shard {}: expected I/N, such as 2/8", text));
-  const int index = integers("--shard", text.substr(0, slash), 1).front();
-  const int count = integers("--shard", text.substr(slash + 1), 1).front();
-  if (count < 1 || index < 1 || index > count)
+  if (shard.count < 1 || shard.index < 1 || shard.index > shard.count)
     throw UsageError(fmt::format("--shard {}: there are parts 1 to N", text));
-  return {index, count};
+  return shard;
 }
 
 std::size_t proposals(const std::vector<CaseResult>& results) {
@@ -104,6 +112,34 @@ std::vector<Suite> load(const std::vector<std::string>& paths, Diagnostics& prob
   return suites;
 }
 
+// Whether a file begins as the pages that are written here do: then it is none of those that are read, and its
+// place may be taken without loading every graph.
+bool is_page(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string begin(15, '\0');
+  in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(in.gcount()));
+  return begin.starts_with("<?xml") || begin.starts_with("<!doctype html>");
+}
+
+// Before anything runs: reports a file that would be written over what is read, and throws where two are one or one
+// cannot be written.
+std::optional<Diagnostic> bad_target(const Arguments& args, Session& session,
+                                     const std::vector<Suite>& suites) {
+  std::error_code none;
+  if (!args.junit.empty() &&
+      (fs::path(args.junit).lexically_normal() == fs::path(args.html).lexically_normal() ||
+       fs::equivalent(args.junit, args.html, none)))
+    throw UsageError(fmt::format("--junit and --html name one file, {}", args.html));
+  for (const auto& [option, file] : {std::pair("--junit", args.junit), std::pair("--html", args.html)}) {
+    if (file.empty()) continue;
+    require_writable(file);
+    if (!fs::is_regular_file(file, none) || is_page(file)) continue;
+    if (auto d = overwriting_one(files_read_by(session, suites), {file}, option)) return d;
+  }
+  return std::nullopt;
+}
+
 int test(Arguments& args, bool json) {
   SuiteOptions& options = args.options;
   options.cancel = &cancel_flag();
@@ -113,6 +149,9 @@ int test(Arguments& args, bool json) {
   const std::vector<Suite> suites = load(args.suites, problems);
   if (problems.has_errors()) return fail(problems, json);
 
+  Session session;
+  if (const auto d = bad_target(args, session, suites)) return fail(*d, json);
+
   std::optional<ScratchFolder> staging;
   if (args.accept || args.review) options.goldens = Goldens::propose;
   if (args.accept && !args.review) options.staging = staging.emplace(golden_folder(suites.front())).path();
@@ -121,7 +160,6 @@ int test(Arguments& args, bool json) {
   if (!args.html.empty()) options.evidence = evidence.emplace(fs::temp_directory_path()).path();
   options.evidence_of_all = args.all_pictures;
 
-  Session session;
   const auto results = run_suites(session, suites, options, [&](const CaseResult& r) {
     if (!json) print(to_text(r, color_on_stdout()));
   });

@@ -24,12 +24,11 @@ std::optional<Diagnostic> overwriting(const std::vector<std::string>& files, con
   const auto own = std::find_if(files.begin(), files.end(),
                                 [&](const std::string& f) { return fs::equivalent(f, path, none); });
   if (own == files.end()) return std::nullopt;
-  return Diagnostic{
-      .code = "overwrites_graph",
-      .pointer = "",
-      .message = fmt::format("{} would write over {}, which the graph reads", what, *own),
-      .expected = "another file",
-      .got = path};
+  return Diagnostic{.code = "overwrites_graph",
+                    .pointer = "",
+                    .message = fmt::format("{} would write over {}, which is read", what, *own),
+                    .expected = "another file",
+                    .got = path};
 }
 
 }  // namespace frustum

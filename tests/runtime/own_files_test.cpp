@@ -96,6 +96,82 @@ TEST(OwnFiles, AGraphThatCannotBeReadIsNoTrace) {
   EXPECT_EQ(read_text(bad), "{");
 }
 
+// ----- sweeps and suites
+
+// A graph that reads a picture, and a suite of it with a book of goldens.
+struct Swept {
+  Swept() {
+    for (const char* name : {"golden", "suites"}) fs::create_directory(folder.file(name));
+    fs::copy_file(std::string(FRUSTUM_SOURCE_DIR) + "/graphs/data/card.png", picture);
+    graph = folder.write("graph.json", R"({ "format": "frustum.graph/1",
+      "nodes": { "card": { "type": "io.load_image", "params": { "file": "card.png" } },
+                 "shown": { "type": "color.convert", "in": { "image": "card" }, "params": { "to": "srgb" } } },
+      "outputs": { "shown": { "from": "shown", "file": "shown.exr" } } })");
+    suite = folder.write("suites/small.json", R"({ "format": "frustum.suite/1", "cases": [
+      { "id": "card", "graph": "../graph.json" } ] })");
+    book = folder.write("golden/small.json", R"({ "format": "frustum.golden/1", "entries": {} })");
+  }
+  test::TempFolder folder;
+  std::string picture = folder.file("card.png"), graph, suite, book;
+};
+
+void expect_refused(const std::vector<std::string>& command, const std::string& file,
+                    const std::string& name) {
+  const std::string before = read_text(file);
+  const auto r = frustum(command);
+  EXPECT_EQ(r.code, 2) << testing::PrintToString(command) << r.err;
+  EXPECT_THAT(r.err, AllOf(HasSubstr("error[overwrites_graph]"), HasSubstr(name + ", which is read")));
+  EXPECT_EQ(read_text(file), before);
+}
+
+TEST(OwnFiles, ASweepIsNotWrittenOverWhatItReads) {
+  const Swept s;
+  for (const char* name : {"sweep.json", "sweep.csv", "points.jsonl"}) {
+    const std::string folder = s.folder.file(std::string("to_") + name), file = folder + "/" + name;
+    fs::create_directory(folder);
+    fs::copy_file(s.picture, folder + "/card.png");
+    fs::copy_file(s.graph, file);
+    expect_refused({"sweep", file, "--knob", "precision=single,double", "-o", folder}, file, name);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 2)
+        << "nothing is made";
+  }
+  // What its nodes read, and the reference.
+  const std::string folder = s.folder.file("out");
+  fs::create_directories(folder + "/pictures");
+  fs::create_hard_link(s.picture, folder + "/sweep.html");
+  expect_refused({"sweep", s.graph, "--knob", "precision=single,double", "-o", folder}, s.picture,
+                 "card.png");
+  fs::remove(folder + "/sweep.html");
+  fs::copy_file(s.picture, folder + "/pictures/reference.png");
+  expect_refused({"sweep", s.graph, "--knob", "precision=single,double", "--reference-file",
+                  folder + "/pictures/reference.png", "-o", folder},
+                 folder + "/pictures/reference.png", "reference.png");
+  // And what a page for docs/ would write.
+  fs::create_hard_link(s.picture, s.folder.file("doc_0.png"));
+  expect_refused({"sweep", s.graph, "--knob", "precision=single,double", "--markdown", s.folder.file("doc"),
+                  "-o", s.folder.file("new")},
+                 s.folder.file("doc_0.png"), "card.png");
+  EXPECT_FALSE(fs::exists(s.folder.file("new")));
+}
+
+TEST(OwnFiles, TheResultsOfASuiteAreNotWrittenOverWhatItReads) {
+  const Swept s;
+  for (const std::string& file : {s.suite, s.graph, s.picture, s.book})
+    for (const char* option : {"--junit", "--html"})
+      expect_refused({"test", s.suite, option, file}, file, fs::path(file).filename().string());
+  // Over results of before they are, and over what is no input.
+  const std::string page = s.folder.file("page.html"), xml = s.folder.file("results.xml");
+  s.folder.write("page.html", "notes");
+  for (int i = 0; i < 2; ++i) {
+    const auto r = frustum({"test", s.suite, "--junit", xml, "--html", page});
+    EXPECT_EQ(r.code, 0) << r.out << r.err;
+    EXPECT_TRUE(read_text(page).starts_with("<!doctype html>"));
+  }
+  const auto one = frustum({"test", s.suite, "--junit", xml, "--html", s.folder.file("./results.xml")});
+  EXPECT_EQ(one.code, 2) << one.err;
+  EXPECT_THAT(one.err, HasSubstr("one file"));
+}
+
 TEST(OwnFiles, ARunThatFailsLeavesNoEmptyFolder) {
   const test::TempFolder folder;
   const auto graph = folder.write("g.json", R"({ "format": "frustum.graph/1",

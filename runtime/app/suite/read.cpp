@@ -154,7 +154,8 @@ class Reader {
         return parser_.missing("a waiver needs \"until\", a date, and \"why\"");
       if (!is_date(k.until))
         return at_.inside("until", [&] {
-          at_.problem("bad_date", fmt::format("'{}' is no date", k.until), "YYYY-MM-DD", k.until);
+          at_.problem("bad_date", fmt::format("'{}' is no date: write it like 2026-12-31", k.until),
+                      "YYYY-MM-DD", k.until);
         });
       c.waiver = Waiver{k.until, k.why};
     });

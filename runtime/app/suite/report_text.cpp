@@ -69,9 +69,9 @@ std::string junit_case(const CaseResult& r) {
 }  // namespace
 
 std::string to_text(const CaseResult& r, bool color) {
-  std::string out =
-      fmt::format("{}{}{}  {}: {}  ({} checks, {})\n", color ? color_of(r.verdict) : "", name_of(r.verdict),
-                  color ? "\033[0m" : "", r.suite, r.id, r.checks, human_time(r.time));
+  std::string out = fmt::format("{}{}{}  {}: {}  ({} {}, {})\n", color ? color_of(r.verdict) : "",
+                                name_of(r.verdict), color ? "\033[0m" : "", r.suite, r.id, r.checks,
+                                r.checks == 1 ? "check" : "checks", human_time(r.time));
   std::size_t traced = 0;
   for (const Candidate& c : r.accepted) {
     if (c.trace)

@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
@@ -37,8 +38,24 @@ std::vector<Json> whole_lines(const std::string& text) {
 
 }  // namespace
 
+// A descriptor that keeps the folder of `file` as long as it is open, or until the program ends, however it does.
+// Where the file system has no such locks, nothing is kept.
+SweepJournal::Folder::Folder(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0) cannot_write(file);
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  ::close(descriptor_);
+  throw NodeError(
+      "folder_in_use",
+      fmt::format("another sweep is writing to {}: choose another folder, or wait", folder.string()));
+}
+SweepJournal::Folder::~Folder() { ::close(descriptor_); }
+
 SweepJournal::SweepJournal(std::filesystem::path file, const std::string& sweep, bool resume)
-    : file_(std::move(file)) {
+    : file_(std::move(file)), folder_(file_) {
   std::error_code none;
   if (resume && std::filesystem::is_regular_file(file_, none)) {
     entries_ = whole_lines(read_text(file_));

@@ -12,7 +12,7 @@ namespace frustum {
 
 class SweepJournal {
  public:
-  // Opens `file`. With `resume` and a file of the same sweep, its entries are read, and a last line that was
+  // Opens `file`, and holds its folder: throws NodeError("folder_in_use") where another sweep writes there now. With `resume` and a file of the same sweep, its entries are read, and a last line that was
   // cut off is dropped; otherwise the file begins anew. Throws NodeError("other_sweep") where `resume` meets
   // another sweep, WorldError("cannot_write_file").
   SweepJournal(std::filesystem::path file, const std::string& sweep, bool resume);
@@ -27,7 +27,20 @@ class SweepJournal {
   void append(const Json& entry);
 
  private:
+  // Held from its constructor to its destructor.
+  class Folder {
+   public:
+    explicit Folder(const std::filesystem::path& file);
+    ~Folder();
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+
+   private:
+    int descriptor_ = -1;
+  };
+
   std::filesystem::path file_;
+  Folder folder_;
   std::vector<Json> entries_;
   int descriptor_ = -1;
   std::chrono::steady_clock::time_point synced_ = {};

@@ -94,6 +94,8 @@ SweepKnob named_knob(Session& session, const Graph& graph, PortRef want, const S
   const auto equals = text.find('=');
   SweepKnob knob{text.substr(0, equals), {}, {}, {}, {}};
   if (equals != std::string::npos) knob.values = split_values(text.substr(equals + 1));
+  if (std::find(knob.values.begin(), knob.values.end(), "") != knob.values.end())
+    throw NodeError("bad_knob", fmt::format("--knob {}: a value is empty", text));
   if (knob.address == "precision") {
     SweepKnob p = precision_knob(graph, want);
     if (!knob.values.empty()) p.values = knob.values;
@@ -128,7 +130,13 @@ SweepKnob named_knob(Session& session, const Graph& graph, PortRef want, const S
 std::vector<SweepKnob> sweep_knobs(Session& session, const Graph& graph, PortRef want,
                                    const SweepOptions& o) {
   std::vector<SweepKnob> knobs;
-  for (const std::string& text : o.knobs) knobs.push_back(named_knob(session, graph, want, o, text));
+  for (const std::string& text : o.knobs) {
+    SweepKnob knob = named_knob(session, graph, want, o, text);
+    if (std::any_of(knobs.begin(), knobs.end(), [&](const auto& k) { return k.address == knob.address; }))
+      throw NodeError("bad_knob",
+                      fmt::format("--knob {}: it is turned already; list all its values once", text));
+    knobs.push_back(std::move(knob));
+  }
   if (!knobs.empty()) return knobs;
   each_declared(graph, want, [&](const std::string& address, const GraphNode& node, const ParamField& f) {
     if (!f.knob->taste)

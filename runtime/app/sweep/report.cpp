@@ -70,6 +70,10 @@ void add_report_time(Sweep& s, std::chrono::steady_clock::time_point began) {
 }  // namespace
 
 std::string costs_text(const SweepCosts& c) {
+  if (c.runs() == 0)
+    return fmt::format(
+        "{:.1f} s: nothing was run, all is from an earlier sweep (loading {:.2f}, report {:.2f} s)", c.total,
+        c.loading, c.report);
   return fmt::format(
       "{:.1f} s: {:.1f} s in runs (timed {:.1f}, first {:.1f}, reference {:.1f}); measuring overhead {:.1f} "
       "% "

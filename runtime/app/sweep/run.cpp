@@ -1,6 +1,7 @@
 #include "runtime/app/export.h"
 #include "runtime/app/files.h"
 #include "runtime/app/metrics/metrics.h"
+#include "runtime/app/read_files.h"
 #include "runtime/app/sweep/analysis.h"
 #include "runtime/app/sweep/journal.h"
 #include "runtime/app/sweep/pictures.h"
@@ -83,8 +84,10 @@ class SweepRun {
     sweep_.port = base->graph.name(base->want);
     sweep_.kind = std::string(base->graph.port(base->want).types.front()->name);
     sweep_.knobs = sweep_knobs(session_, base->graph, base->want, o_);
+    const auto inputs = files_read_by(base->graph);
     if (!make_points(std::move(*base))) return std::nullopt;
     if (!make_reference()) return std::nullopt;
+    if (writes_over(inputs)) return std::nullopt;
     open_journal();
     first_runs();
     rounds();
@@ -258,6 +261,37 @@ class SweepRun {
       timed_into(costs().judging, [&] { save_pictures(picture_folder(), "reference", reference_, nullptr); });
     }
     return reference_;
+  }
+
+  // ----- files
+
+  // Reports it where a file that the sweep will write is one that it reads, and throws where it cannot be written.
+  bool writes_over(std::vector<std::string> inputs) {
+    if (!o_.reference_file.empty()) inputs.push_back(o_.reference_file);
+    std::vector<std::string> made;
+    for (const char* name : {"sweep.json", "sweep.csv", "sweep.html", "points.jsonl"})
+      made.push_back((std::filesystem::path(o_.folder) / name).string());
+    made.push_back((picture_folder() / "reference.png").string());
+    for (const Candidate& c : candidates_)
+      for (const char* kind : {".png", ".error.png"})
+        made.push_back((picture_folder() / (c.point.key + kind)).string());
+    auto d = overwriting_one(inputs, made, "--out");
+    for (std::size_t i = 0; i < 5 && !d; ++i) require_writable(made[i]);
+    if (!d && !o_.markdown.empty()) {
+      d = overwriting_one(inputs, markdown_files(), "--markdown");
+      if (!d) require_writable(o_.markdown + ".svg");
+    }
+    if (d) problems_.add(std::move(*d));
+    return d.has_value();
+  }
+
+  // What is there of what sweep_markdown may write.
+  std::vector<std::string> markdown_files() const {
+    const std::filesystem::path target = o_.markdown;
+    const std::string name = target.filename().string();
+    std::vector<std::string> files{target.string() + ".svg"};
+    for (auto& f : matching_files(target.parent_path() / (name + "_*.png"))) files.push_back(f.string());
+    return files;
   }
 
   // ----- what was finished before

@@ -38,6 +38,7 @@ struct SweepOptions {
   int repeats = 5;
   int threads = 0;
   std::string folder;
+  std::string markdown = {};  // FOLDER/NAME of the pictures of sweep_markdown, if it will be asked for
   bool resume = false;
   const CancelFlag* cancel = nullptr;
   std::function<void(std::size_t done, std::size_t all, const std::string& what)> progress = {};
@@ -123,8 +124,8 @@ struct Sweep {
 std::vector<SweepKnob> sweep_knobs(Session&, const Graph&, PortRef want, const SweepOptions&);
 
 // Runs the sweep and writes its journal and pictures below options.folder; with `resume` what an earlier,
-// cut-off run of the same sweep finished is not run again. Bad graphs are reported in `problems` and give
-// nothing. Throws NodeError for a wrong option, Cancelled (what is finished is kept), WorldError.
+// cut-off run of the same sweep finished is not run again. Bad graphs, and a folder in which files of the sweep would
+// take the place of those it reads, are reported in `problems` and give nothing. Throws NodeError for a wrong option, Cancelled (what is finished is kept), WorldError.
 //
 // Timed is what run_graph does from the plan to the finished buffer, with no cache and nobody listening. Not
 // timed: reading and checking the graph, and its io nodes: files are read once and stand in the graphs as
