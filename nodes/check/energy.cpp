@@ -66,7 +66,10 @@ NodeType nodes::check_energy() {
       .param("order", &Params::order,
              "Points of the quadrature; raising it follows lobes cut by the horizon.",
              {.range = between(4, 512)})
-      .knob({"4", "16", "64", "256"}, "The horizon cuts the lobe, which leaves an error like order^-2.", -2.0)
+      .knob({"4", "16", "64", "256"},
+            "The horizon cuts the lobe: rows of points are off by order^-2, either way, their mean by "
+            "order^-5/2.",
+            -2.5)
       .output("table", &Outputs::table,
               "By angle: shares of the light sent back, of the strongest channel, and how far they exceed 1.")
       .output("excess", &Outputs::excess, "The largest of these excesses; 0 where no light is made.");

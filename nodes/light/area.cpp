@@ -50,8 +50,8 @@ NodeType nodes::light_area() {
       .param("samples", &Params::samples,
              "Points that stand for it; raising it turns steps of shadow into gradients.",
              {.range = between(1, 1024)})
-      .knob({"1", "4", "16", "64", "256"}, "Equal pieces of a smooth light: n of them are off by O(1/n).",
-            -1.0)
+      .knob({"1", "4", "16", "64", "256"},
+            "Of n points spread evenly, n^1/2 lie where a shadow's edge cuts the lamp: off by n^-3/4.", -0.75)
       .check(check)
       .output("light", &Outputs::light, "The light, for the lights of shade.surface and shade.shadow.");
 }

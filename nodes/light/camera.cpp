@@ -96,7 +96,8 @@ NodeType nodes::light_camera() {
       .param("size", &Params::size,
              "Width and height of the picture; raising it narrows the band in which shadows are uncertain.",
              {.unit = "px", .range = between(4, 16384)})
-      .knob({"256", "512", "1024", "2048", "4096"}, "Edges of shadows are off by up to a texel.", -1.0)
+      .knob({"256", "512", "1024", "2048", "4096"},
+            "Edges of shadows are off by up to a texel: wholly, at a share of the points like 1/size.", -0.5)
       .param("side", &Params::side,
              "Which side of the cube around a point light; other lights have one view.")
       .output("camera", &Outputs::camera,
