@@ -5,6 +5,7 @@
 #include "runtime/app/files.h"
 #include "runtime/app/metrics/metrics.h"
 #include "runtime/app/metrics/picture.h"
+#include "runtime/app/png.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -171,15 +172,11 @@ Encoded error_colors(const Raster& raster, const Raster& reference) {
 }
 
 void save(const std::filesystem::path& path, const Encoded& rgb) {
-  Raster out(Frame{
-      .window = {0, 0, rgb[0].width, rgb[0].height}, .planes = {{"R"}, {"G"}, {"B"}}, .color_space = "srgb"});
-  for (int c = 0; c < 3; ++c) {
-    const Grid& g = rgb[static_cast<std::size_t>(c)];
-    for (int y = 0; y < g.height; ++y)
-      for (int x = 0; x < g.width; ++x) out.view().row<float>(c, 0, y)[x] = static_cast<float>(g.at(x, y));
-  }
-  std::filesystem::create_directories(path.parent_path());
-  save_raster(out, path.string());
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < rgb[0].values.size(); ++i)
+    for (const Grid& plane : rgb)
+      bytes.push_back(static_cast<std::uint8_t>(std::clamp(plane.values[i], 0.0, 1.0) * 255 + 0.5));
+  write_text(path, png_file(rgb[0].width, rgb[0].height, bytes));
 }
 
 }  // namespace
