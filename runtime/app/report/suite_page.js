@@ -34,7 +34,7 @@ function outcomes(list) {
 }
 
 function counters(c) {
-  const pairs = [["Peak", bytes(c.peak_bytes)], ["Attempts", c.attempts], ...Object.entries(c.counters).map(([k, v]) => [k.replaceAll("_", " "), number(v)])];
+  const pairs = [...(c.peak_bytes > 0 ? [["Peak", bytes(c.peak_bytes)]] : []), ["Attempts", c.attempts], ...Object.entries(c.counters).map(([k, v]) => [k.replaceAll("_", " "), number(v)])];
   return element("dl", {class: "facts"}, pairs.map(([k, v]) => element("div", {}, element("dt", {}, k), element("dd", {}, v))));
 }
 

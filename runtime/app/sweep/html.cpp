@@ -77,8 +77,9 @@ class Page {
         tile(ms_text(time(*fast)) + " – " + ms_text(time(*slow)), "fastest and slowest"),
         tile(std::to_string(s_.options.repeats), "timed runs of each, in turns"),
         tile(ms_text(s_.costs.total * 1000),
-             fmt::format("for the whole sweep, {:.1f} % of it measuring overhead",
-                         100 * s_.costs.overhead())));
+             s_.costs.runs() > 0 ? fmt::format("for the whole sweep, {:.1f} % of it measuring overhead",
+                                               100 * s_.costs.overhead())
+                                 : "for this page: nothing was run anew"));
   }
   static std::string tile(const std::string& value, const std::string& label) {
     return fmt::format("<div><div class=\"value\">{}</div><div class=\"label\">{}</div></div>", value, label);
@@ -98,7 +99,12 @@ class Page {
     const SweepPoint& now = s_.points.front();
     std::string out = fmt::format("As it is, the graph takes <b>{}</b> and is off by <b>{} {}</b>.",
                                   ms_text(time(now)), metric_, error_text(error(now)));
-    if (s_.steps.empty()) return out + " No single turn of a knob comes nearer to the reference.";
+    const bool exact_there = std::any_of(s_.points.begin(), s_.points.end(), [&](const SweepPoint& p) {
+      return error(p) == 0 && error(now) > 0;
+    });
+    if (s_.steps.empty())
+      return out + (exact_there ? " Nothing but the reference itself is nearer to it."
+                                : " No single turn of a knob comes nearer to the reference.");
     // Of what is nearly free, the first that is worth a change.
     const auto worth = std::find_if(s_.steps.begin(), s_.steps.end(),
                                     [](const SweepStep& t) { return t.error_ratio <= 0.9; });
@@ -130,6 +136,8 @@ class Page {
                             v % 10, escaped(s_.knobs.front().address), escaped(s_.knobs.front().values[v]));
     legend += "<span><i class=\"step\"></i>Pareto front</span>";
     if (!s_.options.grid) legend += "<span>ringed: the graph as it is</span>";
+    if (std::any_of(s_.points.begin(), s_.points.end(), [&](const SweepPoint& p) { return error(p) == 0; }))
+      legend += "<span>hollow, on the lower rim: no error at all</span>";
     return fmt::format(
         "<section><h2>Error against time</h2><p class=\"soft small\">Down is nearer to the reference, left "
         "is faster. Beyond the front nothing is at once faster and better.</p>"
