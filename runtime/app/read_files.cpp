@@ -16,12 +16,6 @@ namespace fs = std::filesystem;
 
 void add_files_of(const Graph& graph, std::set<std::string>& files) {
   for (const std::string& f : own_files(graph)) files.insert(f);
-  for (const GraphNode& n : graph.nodes) {
-    if (!n.type->params.files || !n.params) continue;
-    n.type->params.files(n.params.get(), [&](const FilePath& f) {
-      if (!f.resolved.empty()) files.insert(f.resolved);
-    });
-  }
 }
 
 void add_files_below(const fs::path& folder, std::set<std::string>& files) {
@@ -31,12 +25,6 @@ void add_files_below(const fs::path& folder, std::set<std::string>& files) {
 }
 
 }  // namespace
-
-std::vector<std::string> files_read_by(const Graph& graph) {
-  std::set<std::string> files;
-  add_files_of(graph, files);
-  return {files.begin(), files.end()};
-}
 
 std::vector<std::string> files_read_by(Session& session, const std::vector<Suite>& suites) {
   std::set<std::string> files, graphs;

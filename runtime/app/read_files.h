@@ -11,9 +11,6 @@ namespace frustum {
 
 class Session;
 
-// A graph's own files and those that its nodes read, each once. Cost: one pass over the nodes.
-std::vector<std::string> files_read_by(const Graph&);
-
 // Suites, their books of goldens and the stored numbers beside these, the graphs of all cases and of the runs that
 // they are compared with, and what those graphs read. Graphs that cannot be loaded count with their own file. Cost:
 // loads every graph once, whatever the number of its cases.

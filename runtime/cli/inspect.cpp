@@ -152,7 +152,7 @@ int inspect(const Arguments& args, bool json) {
   if (!graph) return bad_input;
   const auto port = port_of(*graph, args.port, problems);
   if (!port) return fail(problems, json);
-  if (const auto d = overwriting(own_files(*graph), args.save, "--save")) return fail(*d, json);
+  if (const auto d = overwriting(*graph, args.save, "--save")) return fail(*d, json);
   RunOptions options;
   apply(args.run, options);
   options.cancel = &cancel_flag();

@@ -137,6 +137,24 @@ void check_names_of_frames(const Graph& graph, const Demand& demand, Diagnostics
   }
 }
 
+// A trace of that name would take the place of an output.
+std::optional<Diagnostic> trace_over_output(const Graph& graph, const RunOptions& options,
+                                            const std::string& trace) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const auto place = [&](const std::string& path) {
+    return fs::weakly_canonical(fs::absolute(path, none), none);
+  };
+  for (const std::size_t i : options.demand.outputs)
+    if (!trace.empty() && place(output_path(graph.outputs[i], options)) == place(trace))
+      return Diagnostic{
+          .code = "duplicate_file",
+          .message = fmt::format("--trace and output '{}' are one file, {}", graph.outputs[i].name, trace),
+          .expected = "another file",
+          .got = trace};
+  return std::nullopt;
+}
+
 // Loads the graph for one frame and runs it. False where the rest is not worth trying.
 bool run_frame(Session& session, const Arguments& args, bool keep, std::optional<int> frame, bool one_of_many,
                Listeners& listeners, Outcome& o) {
@@ -149,12 +167,13 @@ bool run_frame(Session& session, const Arguments& args, bool keep, std::optional
   apply(args.run, options);
   options.effects = effect_policy(session.registry(), assignments(args.forced), args.skipped, o.problems);
   options.demand = demand_of(*loaded.graph, args.wanted, o.problems);
-  if (auto d = overwriting(own_files(*loaded.graph), args.trace, "--trace")) o.problems.add(std::move(*d));
+  options.out_folder = args.out;
+  options.frame = frame;
+  if (auto d = overwriting(*loaded.graph, args.trace, "--trace")) o.problems.add(std::move(*d));
+  if (auto d = trace_over_output(*loaded.graph, options, args.trace)) o.problems.add(std::move(*d));
   if (one_of_many) check_names_of_frames(*loaded.graph, options.demand, o.problems);
   if (o.problems.has_errors()) return o.code = bad_input, false;
   o.began = true;
-  options.out_folder = args.out;
-  options.frame = frame;
   options.cancel = &cancel_flag();
   options.observer = &listeners.all;
   for (int i = 0; i < std::max(1, args.repeat) && o.code == done; ++i)

@@ -9,10 +9,15 @@
 namespace frustum {
 
 std::vector<std::string> own_files(const Graph& graph) {
-  std::set<std::string_view> files;
+  std::set<std::string> files;
   if (!graph.file.empty()) files.insert(graph.file);
-  for (const GraphNode& n : graph.nodes)
+  for (const GraphNode& n : graph.nodes) {
     if (!n.place.file.empty()) files.insert(n.place.file);
+    if (!n.type->params.files || !n.params) continue;
+    n.type->params.files(n.params.get(), [&](const FilePath& f) {
+      if (!f.resolved.empty()) files.insert(f.resolved);
+    });
+  }
   return {files.begin(), files.end()};
 }
 
@@ -29,6 +34,12 @@ std::optional<Diagnostic> overwriting(const std::vector<std::string>& files, con
                     .message = fmt::format("{} would write over {}, which is read", what, *own),
                     .expected = "another file",
                     .got = path};
+}
+
+std::optional<Diagnostic> overwriting(const Graph& graph, const std::string& path, std::string_view what) {
+  std::error_code none;
+  if (path.empty() || !std::filesystem::exists(path, none)) return std::nullopt;
+  return overwriting(own_files(graph), path, what);
 }
 
 }  // namespace frustum

@@ -17,6 +17,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <optional>
 
 namespace frustum {
 namespace {
@@ -372,14 +373,17 @@ class Runner {
   std::atomic<bool> stopped_{false};
 };
 
-// Outputs whose file is one that the graph was read from.
+// Outputs whose file is one that the graph reads.
 Diagnostics overwriting_outputs(const Graph& graph, const RunOptions& options) {
   Diagnostics problems;
-  if (options.demand.outputs.empty()) return problems;
-  const std::vector<std::string> own = own_files(graph);
+  std::optional<std::vector<std::string>> own;  // looked for where there is something to write over
+  std::error_code none;
   for (const std::size_t i : options.demand.outputs) {
     const GraphOutput& output = graph.outputs[i];
-    auto d = overwriting(own, output_path(output, options), fmt::format("output '{}'", output.name));
+    const std::string path = output_path(output, options);
+    if (!std::filesystem::exists(path, none)) continue;
+    if (!own) own = own_files(graph);
+    auto d = overwriting(*own, path, fmt::format("output '{}'", output.name));
     if (!d) continue;
     d->pointer = child_pointer(output.place.pointer, "file");
     d->file = output.place.file, d->line = output.place.line, d->column = output.place.column;

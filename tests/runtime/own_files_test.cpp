@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <map>
 
 namespace frustum {
 namespace {
@@ -76,6 +77,48 @@ TEST(OwnFiles, OutputsThatAreOneAreRefused) {
     EXPECT_EQ(frustum({"run", "outer.json", "--out", ".", "--want", "first"}, g.folder.path()).code, 0);
     EXPECT_TRUE(fs::exists(g.folder.file("new/box.ply")));
   }
+}
+
+// What the nodes read, and what that names beside itself.
+TEST(OwnFiles, AssetsAreNotWrittenOver) {
+  const test::TempFolder folder;
+  const std::map<std::string, std::string> assets{
+      {"one.obj", "mtllib one.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n"},
+      {"one.mtl", "newmtl m\nmap_Kd card.png\n"},
+      {"card.png", read_text(std::string(FRUSTUM_SOURCE_DIR) + "/graphs/data/card.png")}};
+  for (const auto& [name, text] : assets) folder.write(name, text);
+  const auto graph = [&](const std::string& file) {
+    return folder.write("graph.json", R"({ "format": "frustum.graph/1", "nodes": {
+      "mesh": { "type": "io.load_mesh", "params": { "file": "one.obj" } },
+      "picture": { "type": "io.load_image", "params": { "file": "card.png" } } },
+      "outputs": { "mesh": { "from": "mesh", "file": "a.ply" }, "out": { "from": ")" +
+                                          std::string(file.ends_with("png") ? "picture" : "mesh") +
+                                          R"(", "file": ")" + file + R"(" } } })");
+  };
+  const auto expect_refused = [&](const std::vector<std::string>& command, const std::string& name) {
+    const auto r = frustum(command, folder.path());
+    EXPECT_EQ(r.code, 2) << testing::PrintToString(command);
+    EXPECT_THAT(r.err, AllOf(HasSubstr("error[overwrites_graph]"), HasSubstr(name)));
+    for (const auto& [file, text] : assets) EXPECT_EQ(read_text(folder.file(file)), text);
+  };
+  for (const std::string name : {"one.obj", "card.png"}) {
+    graph(name);
+    expect_refused({"run", "graph.json", "--out", "."}, name);
+  }
+  graph("b.ply");
+  for (const auto& [name, text] : assets) {
+    expect_refused({"report", "graph.json", "-o", name}, name);
+    expect_refused({"inspect", "graph.json", "mesh", "--save", name}, name);
+    expect_refused({"run", "graph.json", "--trace", name}, name);
+  }
+}
+
+TEST(OwnFiles, ATraceIsNoOutput) {
+  const Graphs g;
+  const auto r = frustum({"run", "outer.json", "--out", ".", "--trace", "new/box.ply"}, g.folder.path());
+  EXPECT_EQ(r.code, 2);
+  EXPECT_THAT(r.err, AllOf(HasSubstr("error[duplicate_file]"), HasSubstr("output 'first'")));
+  EXPECT_FALSE(fs::exists(g.folder.file("new")));
 }
 
 TEST(OwnFiles, OtherFilesAreWrittenOver) {

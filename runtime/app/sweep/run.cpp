@@ -9,6 +9,7 @@
 #include "runtime/buffers/numbers.h"
 #include "runtime/core/error.h"
 #include "runtime/graph/keys.h"
+#include "runtime/graph/own_files.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
@@ -84,7 +85,7 @@ class SweepRun {
     sweep_.port = base->graph.name(base->want);
     sweep_.kind = std::string(base->graph.port(base->want).types.front()->name);
     sweep_.knobs = sweep_knobs(session_, base->graph, base->want, o_);
-    const auto inputs = files_read_by(base->graph);
+    const auto inputs = own_files(base->graph);
     if (!make_points(std::move(*base))) return std::nullopt;
     if (!make_reference()) return std::nullopt;
     if (writes_over(inputs)) return std::nullopt;
