@@ -81,6 +81,8 @@ class PixelRun {
     grid_.area = job.region;
     grid_.width = edge_ > 0 ? edge_ : std::max(1, job.region.width());
     grid_.height = edge_ > 0 ? edge_ : std::max(1, job.region.height());
+    // Every node spends some time on a row, however short: of two tiles of one size the wide one is done sooner.
+    if (job.tile_edge == 0 && program_.estimate(edge_).area_ratio <= 1) grid_.width = 2 * edge_;
   }
 
   PixelOutcome run() {

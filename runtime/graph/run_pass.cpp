@@ -274,7 +274,8 @@ class Pass {
     if (estimate.worst && estimate.area_ratio > 1.5 &&
         !small_picture(edge))  // as cut_where_margins_are_wide()
       for (const auto& made : ops_[*estimate.worst].prepared->frames) need += raster_bytes(*made);
-    need += static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency()) * estimate.live_bytes;
+    const std::uint64_t tile = state_.options.tile_edge > 0 ? estimate.live_bytes : tile_bytes(estimate);
+    need += static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency()) * tile;
     for (std::size_t i = pass_.roots.size(); i < roots_.size(); ++i) bands += band_bytes(roots_[i], edge);
     const std::uint64_t live = state_.ledger.live() + need;
     MemoryNeed told{.nodes = {}, .pass = true, .least = live, .most = live + bands};
@@ -325,22 +326,33 @@ class Pass {
 
   // ----- running
 
+  // What the tiles hold that run_pixels() chooses for itself: twice as wide as high where no node reads beyond its own.
+  static std::uint64_t tile_bytes(const TileProgram::Estimate& e) {
+    return e.area_ratio <= 1 ? 2 * e.live_bytes : e.live_bytes;
+  }
+
+  // The edge of tiles that memory has room for; 0: those that run_pixels() chooses.
   int fit_memory() {
     if (state_.options.tile_edge != 0 || ops_.empty()) return state_.options.tile_edge;
     const TileProgram program(ops_, roots_);
-    const int threads = tbb::this_task_arena::max_concurrency();
-    for (int edge = program.choose_edge();; edge /= 2) {
-      const std::uint64_t tiles = program.estimate(edge).live_bytes * static_cast<std::uint64_t>(threads);
+    const auto threads = static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+    const auto fits = [&](int edge, std::uint64_t tile, bool or_throw) {
       std::uint64_t bands = 0;
       for (std::size_t r = 0; r < roots_.size(); ++r)
         if (!whole_[r]) bands += band_bytes(roots_[r], edge);
       try {
-        state_.check_memory(tiles + bands + whole_bytes());
-        return edge;
+        state_.check_memory(tile * threads + bands + whole_bytes());
+        return true;
       } catch (const NodeError&) {
-        if (edge <= 16) throw;
+        if (or_throw) throw;
+        return false;
       }
-    }
+    };
+    const int usual = program.choose_edge();
+    if (fits(usual, tile_bytes(program.estimate(usual)), false)) return 0;
+    int edge = usual;
+    while (!fits(edge, program.estimate(edge).live_bytes, edge <= 16)) edge /= 2;
+    return edge;
   }
 
   std::uint64_t whole_bytes() const {
