@@ -1,5 +1,6 @@
 #include "nodes/shade/surface.h"
 
+#include "nodes/kernels/any_seen.h"
 #include "nodes/kernels/parallel.h"
 #include "nodes/shade.h"
 #include "runtime/buffers/image.h"
@@ -287,6 +288,10 @@ class Filler {
 
   void fill() {
     for (int y = out_.rect().y0; y < out_.rect().y1; ++y) {
+      if (!find_ids(y)) {
+        clear(y);
+        continue;
+      }
       find_rows(y);
       if (s_.once_a_pixel)
         shade_faces(y);
@@ -301,10 +306,19 @@ class Filler {
     return copies_.empty() ? copies_ : copies_.subspan((number * samples_ + sample) * n_, n_);
   }
 
-  // The rows of one y that lighting starts from: number i of sample k at row_[i samples_ + k].
-  void find_rows(int y) {
+  // The faces of one y; returns whether there are any.
+  bool find_ids(int y) {
     for (std::size_t k = 0; k < samples_; ++k)
       id_[k] = points_.row<const std::uint32_t>(s_.id, static_cast<int>(k), y);
+    return std::any_of(id_.begin(), id_.end(), [&](const auto* id) { return kernels::any_seen(id, n_); });
+  }
+
+  void clear(int y) const {
+    for (std::size_t k = 0; k < samples_; ++k) clear_row(n_, out_rows(k, y));
+  }
+
+  // The rows of one y that lighting starts from: number i of sample k at row_[i samples_ + k].
+  void find_rows(int y) {
     if (s_.once_a_face) find_mixed(id_, n_, differs_, mixed_);
     std::size_t number = 0;
     const auto add = [&](const Tile& tile, std::span<const RealPlane> planes) {
@@ -333,13 +347,6 @@ class Filler {
 
   const R* alpha_row(std::size_t sample) const { return row_[alpha_ * samples_ + sample]; }
 
-  void straighten(const R* alpha, PointRow<R>& row, std::size_t n) const {
-    if (s_.alpha && !s_.straight_albedo) straighten_row(row.id, alpha, n, straight_, row.albedo);
-  }
-  void cover(std::size_t sample, int y) const {
-    if (s_.alpha) cover_row(id_[sample], alpha_row(sample), n_, out_rows(sample, y));
-  }
-
   // Flat and Gouraud: what the faces received; of each light that may be hidden, as much as reaches the point.
   void find_face_light(int k, int y, const Run& run, const std::array<R*, 6>& out) {
     const auto find = [&](const kernels::FaceLight<R>& light, std::array<R*, 6> to) {
@@ -356,9 +363,7 @@ class Filler {
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       find(faces_[i], part);
       const R* reach = real_row<R>(visibility_, s_.reach[i], k, y, std::span(part_[6], n_));
-      for (std::size_t c = 0; c < lit_numbers_; ++c)
-        for (std::size_t x = run.first; x < run.second; ++x)
-          out[c][x] = out[c][x] + (reach == nullptr ? part[c][x] : part[c][x] * reach[x]);
+      for (std::size_t c = 0; c < lit_numbers_; ++c) add_row(part[c], reach, run, out[c]);
     }
   }
 
@@ -378,44 +383,40 @@ class Filler {
 
   void shade_samples(int y) {
     for (std::size_t k = 0; k < samples_; ++k) {
-      if (k > 0 && s_.once_a_face) copy_first_sample(k, y);
+      if (k > 0 && s_.once_a_face) copy_row(out_rows(0, y), n_, out_rows(k, y));
       for (const auto& [begin, end] : runs_of(k)) {
         const auto number = [&, first = begin](std::size_t i) { return row_[i * samples_ + k] + first; };
         const kernels::ColorRows<R> out = out_rows(k, y, begin);
         PointRow<R> points = point_row<R>(s_, id_[k] + begin, number, reach_);
+        const std::size_t n = end - begin;
         const R* alpha = s_.alpha ? alpha_row(k) + begin : nullptr;
-        straighten(alpha, points, end - begin);
-        shade_row(shader_.scene, points, end - begin, scratch_, out);
-        fade_row(shader_.scene, id_[k] + begin, end - begin, out);
-        if (s_.alpha) cover_row(id_[k] + begin, alpha, end - begin, out);
+        const bool clear = any_clear(points.id, alpha, n);
+        if (clear && !s_.straight_albedo) straighten_row(alpha, n, straight_, points.albedo);
+        shade_row(shader_.scene, points, n, scratch_, out);
+        fade_row(shader_.scene, points.id, n, out);
+        if (clear) cover_row(alpha, n, out);
       }
     }
-  }
-
-  void copy_first_sample(std::size_t k, int y) {
-    const kernels::ColorRows<R> from = out_rows(0, y), to = out_rows(k, y);
-    for (std::size_t c = 0; c < 4; ++c)
-      if (to.plane[c] != nullptr) std::copy_n(from.plane[c], n_, to.plane[c]);
   }
 
   // Once for each face a pixel sees, at the mean of its samples there; all of them get that colour, each with its own
   // opacity. Samples that are not there have no share in the albedo.
   void shade_faces(int y) {
-    for (std::size_t k = 0; k < samples_; ++k) {
-      std::copy_n(id_[k], n_, left_.data() + k * n_);
-      for (R* plane : out_rows(k, y).plane)
-        if (plane != nullptr) std::fill_n(plane, n_, R(0));
-    }
+    clear(y);
+    for (std::size_t k = 0; k < samples_; ++k) std::copy_n(id_[k], n_, left_.data() + k * n_);
     while (take_face_row<R>(left_.data(), samples_, n_, row_, face_.data(), mean_)) {
       PointRow<R> means = point_row<R>(
           s_, face_.data(), [&](std::size_t i) { return mean_[i]; }, reach_);
-      straighten(s_.alpha ? mean_[alpha_] : nullptr, means, n_);
+      const R* alpha = s_.alpha ? mean_[alpha_] : nullptr;
+      if (!s_.straight_albedo && any_clear(means.id, alpha, n_))
+        straighten_row(alpha, n_, straight_, means.albedo);
       shade_row(shader_.scene, means, n_, scratch_, color_);
       fade_row(shader_.scene, face_.data(), n_, color_);
       for (std::size_t k = 0; k < samples_; ++k)
         put_face_row(id_[k], face_.data(), n_, color_, out_rows(k, y));
     }
-    for (std::size_t k = 0; k < samples_; ++k) cover(k, y);
+    for (std::size_t k = 0; k < samples_ && s_.alpha; ++k)
+      if (any_clear(id_[k], alpha_row(k), n_)) cover_row(alpha_row(k), n_, out_rows(k, y));
   }
 
   const State& s_;

@@ -106,6 +106,26 @@ struct PointRow {
   std::span<const R* const> reach{};  ///< as kernels::PointRows
 };
 
+template <std::floating_point R>
+void clear_row(std::size_t n, const kernels::ColorRows<R>& out) {
+  for (R* plane : out.plane)
+    if (plane != nullptr) std::fill_n(plane, n, R(0));
+}
+
+/// Copies the planes that both have.
+template <std::floating_point R>
+void copy_row(const kernels::ColorRows<R>& from, std::size_t n, const kernels::ColorRows<R>& to) {
+  for (std::size_t k = 0; k < 4; ++k)
+    if (to.plane[k] != nullptr) std::copy_n(from.plane[k], n, to.plane[k]);
+}
+
+/// Adds as much of `light` as reaches each point of the run; all of it for null.
+template <std::floating_point R>
+void add_row(const R* light, const R* reach, const Run& run, R* to) {
+  for (std::size_t x = run.first; x < run.second; ++x)
+    to[x] = to[x] + (reach == nullptr ? light[x] : light[x] * reach[x]);
+}
+
 /// Scales a row's premultiplied colours by the opacity of the face that each shows; nothing seen stays nothing.
 template <std::floating_point R>
 void fade_row(const Scene<R>& s, const std::uint32_t* id, std::size_t n, const kernels::ColorRows<R>& out) {
@@ -115,9 +135,10 @@ void fade_row(const Scene<R>& s, const std::uint32_t* id, std::size_t n, const k
       if (id[x] < s.opacity.size()) plane[x] *= s.opacity[id[x]];
 }
 
-/// Whether a point of the row that shows a face is not opaque. Blocks of a fixed length vectorise.
+/// Whether a point of the row that shows a face is not opaque; null: all are. Blocks of a fixed length vectorise.
 template <std::floating_point R>
 bool any_clear(const std::uint32_t* id, const R* alpha, std::size_t n) {
+  if (alpha == nullptr) return false;
   constexpr std::size_t block = 16;
   const auto clear = [&](std::size_t x) -> std::uint32_t {
     return static_cast<std::uint32_t>(id[x] != nothing_there) & static_cast<std::uint32_t>(alpha[x] != R(1));
@@ -133,9 +154,8 @@ bool any_clear(const std::uint32_t* id, const R* alpha, std::size_t n) {
 /// Light falls on the straight colour: where a point is not opaque, premultiplied albedo is divided by its opacity, in
 /// rows of `to` that `albedo` points to then.
 template <std::floating_point R>
-void straighten_row(const std::uint32_t* id, const R* alpha, std::size_t n, const std::array<R*, 3>& to,
+void straighten_row(const R* alpha, std::size_t n, const std::array<R*, 3>& to,
                     std::array<const R*, 3>& albedo) {
-  if (!any_clear(id, alpha, n)) return;
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t x = 0; x < n; ++x)
       to[c][x] = alpha[x] > R(0) && alpha[x] != R(1) ? albedo[c][x] / alpha[x] : albedo[c][x];
@@ -146,8 +166,7 @@ void straighten_row(const std::uint32_t* id, const R* alpha, std::size_t n, cons
 /// Scales colours by the opacity of each point. What is not there has no light, however bright: 0 times infinity would
 /// be NaN.
 template <std::floating_point R>
-void cover_row(const std::uint32_t* id, const R* alpha, std::size_t n, const kernels::ColorRows<R>& out) {
-  if (!any_clear(id, alpha, n)) return;
+void cover_row(const R* alpha, std::size_t n, const kernels::ColorRows<R>& out) {
   for (R* plane : out.plane)
     for (std::size_t x = 0; x < n && plane != nullptr; ++x)
       plane[x] = alpha[x] == R(0) ? R(0) : plane[x] * alpha[x];

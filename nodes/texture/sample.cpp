@@ -1,5 +1,6 @@
 #include "nodes/texture/sample.h"
 
+#include "nodes/kernels/any_seen.h"
 #include "nodes/texture.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/minification.h"
@@ -330,6 +331,11 @@ class Sampler {
     const auto* id = s_.id < 0 ? nullptr : points_.row<const std::uint32_t>(s_.id, sample, y);
     kernels::RgbaRows<R> to;
     for (std::size_t c = 0; c < 4; ++c) to.plane[c] = out_row<R>(out_, static_cast<int>(c), sample, y);
+    if (id != nullptr && !kernels::any_seen(id, n_)) {
+      for (R* plane : to.plane)
+        if (plane != nullptr) std::fill_n(plane, n_, R(0));
+      return;
+    }
     if (tests_ && to.plane[3] == nullptr) to.plane[3] = alpha_.data();
     if (s_.skin_of.empty())
       look_up(s_.skins[0], sample, y, id, to);

@@ -57,11 +57,11 @@ HWY_INLINE void each_vector(int width, F&& f) {
   for (; x < width; ++x) f(hn::CappedTag<float, 1>(), x);
 }
 
-void clear(std::uint32_t* HWY_RESTRICT id, float* HWY_RESTRICT z, int width) {
+void clear(std::uint32_t* HWY_RESTRICT id, float* HWY_RESTRICT z, int width, float depth) {
   each_vector(width, [=](auto d, int x) {
     const hn::RebindToUnsigned<decltype(d)> du;
     hn::StoreU(hn::Set(du, no_face), du, id + x);
-    hn::StoreU(hn::Set(d, std::numeric_limits<float>::infinity()), d, z + x);
+    hn::StoreU(hn::Set(d, depth), d, z + x);
   });
 }
 
@@ -75,14 +75,20 @@ void finish(const std::uint32_t* HWY_RESTRICT id, float* HWY_RESTRICT z, int wid
 }
 
 void fill(const FillScene<float>& scene, PixelRect rect, PlaneView<std::uint32_t> id, PlaneView<float> z) {
-  const int width = rect.x1 - rect.x0, height = rect.y1 - rect.y0, samples = scene.pattern.samples;
-  for (int s = 0; s < samples; ++s)
-    for (int y = 0; y < height; ++y) clear(id.row(s, y), z.row(s, y), width);
+  // Each bin is cleared, drawn and finished before the next, so that it stays in the first caches.
   each_bin_of(*scene.bins, rect, [&](PixelRect part, glm::ivec2 corner, std::span<const BinEntry> entries) {
+    const int x = part.x0 - rect.x0, width = part.x1 - part.x0;
+    const auto each_row = [&](auto&& visit) HWY_ATTR {
+      for (int s = 0; s < scene.pattern.samples; ++s)
+        for (int y = part.y0 - rect.y0; y < part.y1 - rect.y0; ++y) visit(id.row(s, y) + x, z.row(s, y) + x);
+    };
+    const float least = entries.empty() ? scene.far() : std::numeric_limits<float>::infinity();
+    each_row([&](std::uint32_t* i, float* depth) HWY_ATTR { clear(i, depth, width, least); });
+    if (entries.empty()) return;
     draw_part(scene, {{}, nullptr, &scene.pattern, id, z, rect, part, corner + bin_radius, 0, 0}, entries);
+    each_row([&](std::uint32_t* i, float* depth)
+                 HWY_ATTR { finish(i, depth, width, scene.sign(), scene.far()); });
   });
-  for (int s = 0; s < samples; ++s)
-    for (int y = 0; y < height; ++y) finish(id.row(s, y), z.row(s, y), width, scene.sign(), scene.far());
 }
 
 }  // namespace

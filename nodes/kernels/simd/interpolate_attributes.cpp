@@ -367,14 +367,19 @@ void interpolate_stretch(const Attribute<float>& a, const AttributeScene<float>&
   each_seen(seen, [&](int i) { interpolate<width>(a, scene, at, rect, i, p); });
 }
 
+// Loads the faces of a stretch; returns a bit for each vector of points that sees any.
+HWY_INLINE std::uint32_t load_stretch(const std::uint32_t* ids, int count, Points& p) {
+  const int lanes = static_cast<int>(hn::Lanes(Float()));
+  std::uint32_t seen = 0;
+  for (int i = 0; i < count; i += lanes)
+    if (load_faces(ids, count, i, p)) seen |= 1u << (i / lanes);
+  return seen;
+}
+
 void fill_stretch(const AttributeScene<float>& scene, const AttributePlanes<float>& planes,
-                  bool differentiate, const Stretch& at, const PixelRect& rect, const std::uint32_t* ids,
+                  bool differentiate, const Stretch& at, const PixelRect& rect, std::uint32_t seen,
                   Points& p) {
   const int lanes = static_cast<int>(hn::Lanes(Float()));
-  std::uint32_t seen = 0;  // a bit for each vector of points
-  for (int i = 0; i < at.count; i += lanes)
-    if (load_faces(ids, at.count, i, p)) seen |= 1u << (i / lanes);
-  if (seen == 0) return fill_empty(planes, at, rect, 0, at.count);
   for (int i = 0; i < at.count; i += lanes)
     if ((seen >> (i / lanes) & 1) == 0) fill_empty(planes, at, rect, i, std::min(i + lanes, at.count));
   each_seen(seen, [&](int i) {
@@ -421,10 +426,19 @@ void interpolate_attributes(const AttributeScene<float>& scene, PixelRect rect,
     for (int y = rect.y0; y < rect.y1; ++y) {
       const std::uint32_t* ids = id.row(s, y - rect.y0);
       if (y + 1 < rect.y1) prefetch(scene, planes, ids + id.row_stride, rect.x1 - rect.x0);
+      int empty = rect.x0;  // from there to x nothing is seen, nor is it filled yet
+      const auto clear_to = [&](int x) HWY_ATTR {
+        if (empty < x) fill_empty(planes, {s, empty, y, x - empty}, rect, 0, x - empty);
+      };
       for (int x = rect.x0; x < rect.x1; x += stretch) {
         const Stretch at{s, x, y, std::min(stretch, rect.x1 - x)};
-        fill_stretch(scene, planes, differentiate, at, rect, ids + (x - rect.x0), points);
+        const std::uint32_t seen = load_stretch(ids + (x - rect.x0), at.count, points);
+        if (seen == 0) continue;
+        clear_to(x);
+        fill_stretch(scene, planes, differentiate, at, rect, seen, points);
+        empty = x + at.count;
       }
+      clear_to(rect.x1);
     }
   }
 }
