@@ -1,5 +1,7 @@
 #include "nodes/kernels/simd/texture_lookup.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
@@ -182,29 +184,21 @@ HWY_INLINE V pyramid_level(const UvRows<float>& p, const TexelLevel& base, int l
   return hn::IfThenElseZero(hn::Gt(level, hn::Zero(d)), hn::IfThenElse(hn::Lt(level, top), level, top));
 }
 
-// Where one level is read, lane by lane: its texels, the offsets of four of them, and the fractions between them.
+// Where one level is read, lane by lane: the first texel of the upper and of the lower row, how far off the second of
+// either is, and the fractions between them.
 struct Taps {
-  const float* level[max_lanes];
-  HWY_ALIGN std::int32_t offset[4][max_lanes];  // in numbers, not texels
+  const float* row[2][max_lanes];
+  HWY_ALIGN std::int32_t step[max_lanes];  // in numbers, not texels
+  bool adjacent;                           // the second texels follow the first ones in every lane
   V fx, fy;
 };
-
-HWY_INLINE void find_taps(const TexelPyramid& p, V s, V t, V width, V height, Taps& taps) {
-  const Di di;
-  const Pair x = texel_pair(s, width, p.wrap_u), y = texel_pair(t, height, p.wrap_v);
-  const Vi stride = hn::ConvertTo(di, width);
-  const Vi top = hn::Mul(y.first, stride), bottom = hn::Mul(y.second, stride);
-  const auto put = [&](std::size_t k, Vi row, Vi column)
-                       HWY_ATTR { hn::Store(hn::ShiftLeft<2>(hn::Add(row, column)), di, taps.offset[k]); };
-  put(0, top, x.first), put(1, top, x.second), put(2, bottom, x.first), put(3, bottom, x.second);
-  taps.fx = x.fraction, taps.fy = y.fraction;
-}
 
 // Colours stand in vectors as they do in memory, four numbers a point: vector `g` of a group holds the points
 // from g * blocks on.
 using D4 = hn::CappedTag<float, 4>;
 HWY_INLINE std::size_t blocks() { return hn::Lanes(D()) / 4; }
 
+// The texels at `from`, one a block; and of two texels each, the first ones and the second ones.
 #if HWY_MAX_BYTES >= 64
 HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
   const hn::Half<D> dh;
@@ -212,13 +206,30 @@ HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
   return hn::Combine(D(), hn::Combine(dh, hn::LoadU(d4, from[3]), hn::LoadU(d4, from[2])),
                      hn::Combine(dh, hn::LoadU(d4, from[1]), hn::LoadU(d4, from[0])));
 }
+HWY_INLINE void load_pairs(const float* const* from, V& first, V& second) {
+  const D d;
+  const hn::Half<D> dh;
+  const V even = hn::Combine(d, hn::LoadU(dh, from[2]), hn::LoadU(dh, from[0]));
+  const V odd = hn::Combine(d, hn::LoadU(dh, from[3]), hn::LoadU(dh, from[1]));
+  first = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(odd), even);
+  second = hn::OddEvenBlocks(odd, hn::SwapAdjacentBlocks(even));
+}
 #elif HWY_MAX_BYTES == 32
 HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
   const D4 d4;
   return hn::Combine(D(), hn::LoadU(d4, from[1]), hn::LoadU(d4, from[0]));
 }
+HWY_INLINE void load_pairs(const float* const* from, V& first, V& second) {
+  const D d;
+  const V left = hn::LoadU(d, from[0]), right = hn::LoadU(d, from[1]);
+  first = hn::ConcatLowerLower(d, right, left);
+  second = hn::ConcatUpperUpper(d, right, left);
+}
 #else
 HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) { return hn::LoadU(D(), from[0]); }
+HWY_INLINE void load_pairs(const float* const* from, V& first, V& second) {
+  first = hn::LoadU(D(), from[0]), second = hn::LoadU(D(), from[0] + 4);
+}
 #endif
 
 // `between` in every lane.
@@ -235,37 +246,116 @@ HWY_INLINE V spread(V of, std::size_t g) {
 }
 
 HWY_INLINE V fetch(const Taps& taps, std::size_t g) {
-  const auto at = [&](std::size_t k) HWY_ATTR {
-    const float* from[max_lanes / 4];
-    for (std::size_t b = 0; b < blocks(); ++b) {
-      const std::size_t lane = g * blocks() + b;
-      from[b] = taps.level[lane] + taps.offset[k][lane];
+  V first[2], second[2];
+  for (std::size_t r = 0; r < 2; ++r) {
+    const float* const* from = taps.row[r] + g * blocks();
+    if (taps.adjacent) {
+      load_pairs(from, first[r], second[r]);
+      continue;
     }
-    return load_blocks(from);
-  };
+    const float *left[max_lanes / 4], *right[max_lanes / 4];
+    for (std::size_t b = 0; b < blocks(); ++b)
+      left[b] = from[b], right[b] = from[b] + taps.step[g * blocks() + b];
+    first[r] = load_blocks(left), second[r] = load_blocks(right);
+  }
   const V fx = spread(taps.fx, g);
-  return blend(blend(at(0), at(1), fx), blend(at(2), at(3), fx), spread(taps.fy, g));
+  return blend(blend(first[0], second[0], fx), blend(first[1], second[1], fx), spread(taps.fy, g));
 }
 
 // What is read of the levels of a pyramid, level by level; one more than there are, which is the last again.
 struct LevelTable {
   const float* rgba[33];
-  HWY_ALIGN float width[33], height[33];
+  HWY_ALIGN float width[33 + max_lanes] = {}, height[33 + max_lanes] = {};
+  std::size_t count;
 
-  explicit LevelTable(const TexelPyramid& p) {
-    for (std::size_t i = 0; i < p.levels.size() + 1; ++i) {
+  explicit LevelTable(const TexelPyramid& p) : count(p.levels.size() + 1) {
+    for (std::size_t i = 0; i < count; ++i) {
       const TexelLevel& level = p.levels[std::min(i, p.levels.size() - 1)];
       rgba[i] = level.rgba;
       width[i] = static_cast<float>(level.width), height[i] = static_cast<float>(level.height);
     }
   }
-  HWY_INLINE void find_taps(const TexelPyramid& p, V s, V t, Vi level, Taps& taps) const {
+
+  // Gathering costs several times as much as picking from two vectors, which hold the levels of most pyramids.
+  HWY_INLINE V pick(const float* of, Vi level) const {
     const D d;
-    HWY_ALIGN std::int32_t levels[max_lanes];
-    hn::Store(level, Di(), levels);
-    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) taps.level[lane] = rgba[levels[lane]];
-    simd::HWY_NAMESPACE::find_taps(p, s, t, hn::GatherIndex(d, width, level),
-                                   hn::GatherIndex(d, height, level), taps);
+    const Di di;
+    const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
+    if (count > 2 * hn::Lanes(d)) return hn::GatherIndex(d, of, level);
+    const auto at = hn::IndicesFromVec(d, hn::And(level, hn::Set(di, lanes - 1)));
+    const V low = hn::TableLookupLanes(hn::LoadU(d, of), at);
+    const V high = hn::TableLookupLanes(hn::LoadU(d, of + lanes), at);
+    return hn::IfThenElse(hn::RebindMask(d, hn::Lt(level, hn::Set(di, lanes))), low, high);
+  }
+
+  HWY_INLINE void find_taps(const TexelPyramid& p, V s, V t, Vi level, Taps& taps) const {
+    const Di di;
+    const V columns = pick(width, level);
+    const Pair x = texel_pair(s, columns, p.wrap_u), y = texel_pair(t, pick(height, level), p.wrap_v);
+    const Vi stride = hn::ConvertTo(di, columns), step = hn::Sub(x.second, x.first);
+    const auto offset = [&](Vi row)
+                            HWY_ATTR { return hn::ShiftLeft<2>(hn::Add(hn::Mul(row, stride), x.first)); };
+    HWY_ALIGN std::int32_t levels[max_lanes], upper[max_lanes], lower[max_lanes];
+    hn::Store(level, di, levels);
+    hn::Store(offset(y.first), di, upper);
+    hn::Store(offset(y.second), di, lower);
+    for (std::size_t lane = 0; lane < hn::Lanes(di); ++lane) {
+      taps.row[0][lane] = rgba[levels[lane]] + upper[lane];
+      taps.row[1][lane] = rgba[levels[lane]] + lower[lane];
+      hwy::Prefetch(taps.row[0][lane]);
+      hwy::Prefetch(taps.row[1][lane]);
+    }
+    hn::Store(hn::ShiftLeft<2>(step), di, taps.step);
+    taps.adjacent = hn::AllTrue(di, hn::Eq(step, hn::Set(di, 1)));
+    taps.fx = x.fraction, taps.fy = y.fraction;
+  }
+};
+
+// One vector of points of bilinear or trilinear lookup, in two steps: where it reads, and the reading.
+struct PyramidPoints {
+  M inside;
+  bool any, blends;
+  V fraction;
+  Taps near, far;
+
+  HWY_INLINE void find(const TexelPyramid& p, const LevelTable& table, Lookup kind,
+                       const UvRows<float>& row) {
+    const D d;
+    const Di di;
+    inside = covered(row);
+    any = !hn::AllFalse(d, inside);
+    if (!any) return;
+    // Points that see nothing read a texel, too, and drop it.
+    const V s = fold(hn::LoadU(d, row.u), p.wrap_u);
+    const V t = hn::Sub(hn::Set(d, 1.0F), fold(hn::LoadU(d, row.v), p.wrap_v));
+    V level = hn::Zero(d);
+    if (kind == Lookup::trilinear)
+      level = pyramid_level(row, p.levels[0], static_cast<int>(p.levels.size()) - 1);
+    const Vi fine = hn::ConvertTo(di, level);
+    fraction = hn::Sub(level, hn::ConvertTo(d, fine));
+    blends = !hn::AllFalse(d, hn::Gt(fraction, hn::Zero(d)));
+    table.find_taps(p, s, t, fine, near);
+    if (blends) table.find_taps(p, s, t, hn::Add(fine, hn::Set(di, 1)), far);
+  }
+
+  HWY_INLINE void read(const RgbaRows<float>& rgba) const {
+    const D d;
+    if (!any) {
+      for (std::size_t k = 0; k < 4; ++k) put(rgba, k, inside, hn::Zero(d));
+      return;
+    }
+    HWY_ALIGN float color[4 * max_lanes];
+    for (std::size_t g = 0; g < 4; ++g) {
+      V c = fetch(near, g);
+      if (blends) {
+        const V f = spread(fraction, g);
+        c = hn::IfThenElse(hn::Gt(f, hn::Zero(d)), blend(c, fetch(far, g), f), c);
+      }
+      hn::Store(c, d, color + g * hn::Lanes(d));
+    }
+    V channel[4];
+    hn::LoadInterleaved4(d, color, channel[0], channel[1], channel[2], channel[3]);
+    for (std::size_t k = 0; k < 4; ++k) put(rgba, k, inside, channel[k]);
   }
 };
 
@@ -295,41 +385,18 @@ void look_up_pyramid(const TexelPyramid& p, const Filtering& filter, const UvRow
   if (filter.kind == Lookup::ewa) return look_up_ellipses(p, filter, in, n, out);
   if ((filter.kind != Lookup::bilinear && filter.kind != Lookup::trilinear) || p.has_border())
     return kernels::look_up(p, filter, in, n, out);
-  const D d;
-  const Di di;
-  const int last = static_cast<int>(p.levels.size()) - 1;
+  // The texels of so many vectors are asked for before the first is read: textures are larger than caches.
+  constexpr std::size_t ahead = 4;
+  const std::size_t lanes = hn::Lanes(D()), whole = n / lanes * lanes;
   const LevelTable table(p);
-  for_each_vector(p, filter, in, n, out, [&](const UvRows<float>& row, const RgbaRows<float>& rgba) HWY_ATTR {
-    const M inside = covered(row);
-    if (hn::AllFalse(d, inside)) {
-      for (std::size_t k = 0; k < 4; ++k) put(rgba, k, inside, hn::Zero(d));
-      return;
-    }
-    // Points that see nothing read a texel, too, and drop it.
-    const V s = fold(hn::LoadU(d, row.u), p.wrap_u);
-    const V t = hn::Sub(hn::Set(d, 1.0F), fold(hn::LoadU(d, row.v), p.wrap_v));
-    V level = hn::Zero(d);
-    if (filter.kind == Lookup::trilinear) level = pyramid_level(row, p.levels[0], last);
-    const Vi fine = hn::ConvertTo(di, level);
-    const V fraction = hn::Sub(level, hn::ConvertTo(d, fine));
-    const bool blends = !hn::AllFalse(d, hn::Gt(fraction, hn::Zero(d)));
-
-    Taps near, far;
-    table.find_taps(p, s, t, fine, near);
-    if (blends) table.find_taps(p, s, t, hn::Add(fine, hn::Set(di, 1)), far);
-    HWY_ALIGN float color[4 * max_lanes];
-    for (std::size_t g = 0; g < 4; ++g) {
-      V c = fetch(near, g);
-      if (blends) {
-        const V f = spread(fraction, g);
-        c = hn::IfThenElse(hn::Gt(f, hn::Zero(d)), blend(c, fetch(far, g), f), c);
-      }
-      hn::Store(c, d, color + g * hn::Lanes(d));
-    }
-    V channel[4];
-    hn::LoadInterleaved4(d, color, channel[0], channel[1], channel[2], channel[3]);
-    for (std::size_t k = 0; k < 4; ++k) put(rgba, k, inside, channel[k]);
-  });
+  PyramidPoints points[ahead];
+  for (std::size_t x = 0; x < whole; x += ahead * lanes) {
+    const std::size_t count = std::min(ahead, (whole - x) / lanes);
+    for (std::size_t i = 0; i < count; ++i)
+      points[i].find(p, table, filter.kind, advanced(in, x + i * lanes));
+    for (std::size_t i = 0; i < count; ++i) points[i].read(advanced(out, x + i * lanes));
+  }
+  if (whole < n) kernels::look_up(p, filter, advanced(in, whole), n - whole, advanced(out, whole));
 }
 
 #endif
