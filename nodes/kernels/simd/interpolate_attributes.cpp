@@ -44,6 +44,16 @@ struct Points {
       w[stretch];
   HWY_ALIGN std::int32_t offset_x[stretch], offset_y[stretch];
   HWY_ALIGN Quads corner[3];  // screen corners, then attributes of the corners
+  // Of a vector of points that see one face or two: these, the same twice for one; the lanes that `pair` tells apart.
+  struct Pair {
+    bool holds;
+    std::uint32_t face[2];
+    glm::uvec3 vertex[2];
+    hn::Mask<Float> first;
+  };
+  Pair pair[stretch / hn::MaxLanes(Float())];
+
+  HWY_INLINE Pair& pair_from(int i) { return pair[i / static_cast<int>(hn::Lanes(Float()))]; }
 };
 
 struct Stretch {
@@ -87,25 +97,31 @@ HWY_INLINE bool load_faces(const std::uint32_t* ids, int count, int i, Points& p
   return !hn::AllFalse(Float(), seen_from(p, i));
 }
 
-// Whether the points from i on all see one face.
-HWY_INLINE bool one_face(const Points& p, int i) {
+// Finds whether the points from i on see two faces at most.
+HWY_INLINE bool find_pair(const AttributeScene<float>& scene, int i, Points& p) {
   const hn::RebindToUnsigned<Float> du;
-  return p.face[i] != no_face && hn::AllTrue(du, hn::Eq(hn::Load(du, p.face + i), hn::Set(du, p.face[i])));
+  const auto face = hn::Load(du, p.face + i), none = hn::Set(du, no_face);
+  const auto first_of = [&](auto mask) HWY_ATTR {
+    return p.face[i + static_cast<int>(hn::FindKnownFirstTrue(du, mask))];
+  };
+  Points::Pair& pair = p.pair_from(i);
+  const auto seen = hn::Ne(face, none);
+  pair.face[0] = pair.face[1] = first_of(seen);
+  const auto first = hn::Eq(face, hn::Set(du, pair.face[0])), others = hn::AndNot(first, seen);
+  pair.first = hn::RebindMask(Float(), first);
+  if (!hn::AllFalse(du, others)) pair.face[1] = first_of(others);
+  pair.holds = hn::AllFalse(du, hn::And(others, hn::Ne(face, hn::Set(du, pair.face[1]))));
+  for (int k = 0; k < 2 && pair.holds; ++k) pair.vertex[k] = scene.mesh.face[pair.face[k]];
+  return pair.holds;
 }
 
 // Loads the screen corners of the points from i on, some of which see a face. The others hold a face, too, so
 // that what is loaded for them exists.
 void load_points(const AttributeScene<float>& scene, int i, Points& p) {
+  if (find_pair(scene, i, p)) return;
   const int end = i + static_cast<int>(hn::Lanes(Float()));
-  std::uint32_t held = *std::find_if(p.face + i, p.face + end, [](std::uint32_t f) { return f != no_face; });
+  std::uint32_t held = p.pair_from(i).face[0];
   glm::uvec3 vertex = scene.mesh.face[held];
-  if (one_face(p, i)) {
-    // The vertices are still asked for where bases differ.
-    const hn::RebindToUnsigned<Float> du;
-    hn::Store(hn::Set(du, held), du, p.held + i);
-    for (int k = 0; k < 3; ++k) hn::Store(hn::Set(du, vertex[k]), du, p.vertex[k] + i);
-    return;
-  }
   for (; i < end; ++i) {
     const bool seen = p.face[i] != no_face;
     if (seen && p.face[i] != held) {
@@ -136,40 +152,51 @@ struct LaneCorners {
   Doubles x[3], y[3], per_w[3], q[3];
 };
 
-// The corners of one face, in every lane.
-HWY_INLINE LaneCorners same_corners(const AttributeScene<float>& scene, std::uint32_t face) {
-  const Double dd;
-  LaneCorners c;
-  for (int k = 0; k < 3; ++k) {
-    const glm::vec4& corner = scene.mesh.position[scene.mesh.face[face][k]];
-    const int bits = scene.mesh.corner_bits;
-    c.x[k] = hn::Set(dd, static_cast<double>(snap(static_cast<double>(corner.x), bits)));
-    c.y[k] = hn::Set(dd, static_cast<double>(snap(static_cast<double>(corner.y), bits)));
-    c.per_w[k] = hn::Set(dd, static_cast<double>(corner.w));
-    c.q[k] = scene.interpolation == Interpolation::hyperbolic ? c.per_w[k] : hn::Set(dd, 1.0);
-  }
-  return c;
-}
+// The screen corners of the points of a vector: on the grid, and 1/w.
+struct GridCorners {
+  hn::Vec<hn::RebindToSigned<Float>> x[3], y[3];
+  Floats per_w[3];
 
-HWY_INLINE LaneCorners load_corners(const AttributeScene<float>& scene, const Points& p, int i) {
-  const HalfFloat df;
-  const Double dd;
-  const auto scale = hn::Set(df, static_cast<float>(1 << scene.mesh.corner_bits));
-  const int shift = corner_bits - scene.mesh.corner_bits;
-  LaneCorners c;
-  for (int k = 0; k < 3; ++k) {
-    hn::Vec<HalfFloat> x, y, z, w;
-    hn::LoadInterleaved4(df, p.corner[k][i], x, y, z, w);
-    const auto snapped = [&](auto v) {
-      return hn::PromoteTo(dd, hn::ShiftLeftSame(hn::NearestInt(hn::Mul(v, scale)), shift));
-    };
-    c.x[k] = snapped(x);
-    c.y[k] = snapped(y);
-    c.per_w[k] = hn::PromoteTo(dd, w);
-    c.q[k] = scene.interpolation == Interpolation::hyperbolic ? c.per_w[k] : hn::Set(dd, 1.0);
+  HWY_INLINE GridCorners(const AttributeScene<float>& scene, Points& p, int i) {
+    const Float df;
+    const auto scale = hn::Set(df, static_cast<float>(1 << scene.mesh.corner_bits));
+    const int shift = corner_bits - scene.mesh.corner_bits;
+    const Points::Pair& pair = p.pair_from(i);
+    for (int k = 0; k < 3; ++k) {
+      Floats px, py, pz;
+      if (pair.holds) {
+        const glm::vec4 &a = scene.mesh.position[pair.vertex[0][k]],
+                        &b = scene.mesh.position[pair.vertex[1][k]];
+        px = hn::IfThenElse(pair.first, hn::Set(df, a.x), hn::Set(df, b.x));
+        py = hn::IfThenElse(pair.first, hn::Set(df, a.y), hn::Set(df, b.y));
+        per_w[k] = hn::IfThenElse(pair.first, hn::Set(df, a.w), hn::Set(df, b.w));
+      } else {
+        hn::LoadInterleaved4(df, p.corner[k][i], px, py, pz, per_w[k]);
+      }
+      x[k] = hn::ShiftLeftSame(hn::NearestInt(hn::Mul(px, scale)), shift);
+      y[k] = hn::ShiftLeftSame(hn::NearestInt(hn::Mul(py, scale)), shift);
+    }
   }
-  return c;
-}
+
+  // Of the lower or the upper half of the lanes.
+  template <bool upper>
+  HWY_INLINE LaneCorners half(const AttributeScene<float>& scene) const {
+    const Double dd;
+    const auto part = [&](auto v) HWY_ATTR {
+      const hn::Half<hn::DFromV<decltype(v)>> dh;
+      if constexpr (upper)
+        return hn::PromoteTo(dd, hn::UpperHalf(dh, v));
+      else
+        return hn::PromoteTo(dd, hn::LowerHalf(dh, v));
+    };
+    LaneCorners c;
+    for (int k = 0; k < 3; ++k) {
+      c.x[k] = part(x[k]), c.y[k] = part(y[k]), c.per_w[k] = part(per_w[k]);
+      c.q[k] = scene.interpolation == Interpolation::hyperbolic ? c.per_w[k] : hn::Set(dd, 1.0);
+    }
+    return c;
+  }
+};
 
 // WeightedCorners::at for the points from i on.
 template <bool differentiate>
@@ -262,14 +289,6 @@ struct Corners {
   Floats first, ab, ac, least, greatest;
 };
 
-// Where all points see one face and have the same base.
-HWY_INLINE Corners same_corners(const std::array<const float*, 3>& corner, std::size_t component) {
-  const Float df;
-  const float a = corner[0][component], b = corner[1][component], c = corner[2][component];
-  const float least = std::min({a, b, c}), greatest = std::max({a, b, c});
-  return {hn::Set(df, a), hn::Set(df, b - a), hn::Set(df, c - a), hn::Set(df, least), hn::Set(df, greatest)};
-}
-
 HWY_INLINE Corners corners_of(Floats a, Floats b, Floats c) {
   return {a, hn::Sub(b, a), hn::Sub(c, a), lesser(c, lesser(b, a)), greater(c, greater(b, a))};
 }
@@ -302,28 +321,32 @@ template <int width>
 void interpolate(const Attribute<float>& a, const AttributeScene<float>& scene, const Stretch& at,
                  const PixelRect& rect, int i, Points& p) {
   const Float df;
-  if (one_face(p, i) && one_base(p, i)) {
-    std::array<const float*, 3> corner;
-    for (int k = 0; k < 3; ++k)
-      corner[static_cast<std::size_t>(k)] =
-          a.data + a.row(scene.mesh, p.face[i], (p.base[i] + k) % 3) * width;
-    for (std::size_t c = 0; c < width; ++c)
-      interpolate_component(a, c, same_corners(corner, c), at, rect, i, p);
-    return;
-  }
+  const Points::Pair& pair = p.pair_from(i);
+  // With one base in all lanes the corners are turned, and no lane needs to pick.
+  const bool turned = one_base(p, i);
+  const int t = turned ? p.base[i] : 0, corner[3] = {t, (t + 1) % 3, (t + 2) % 3};
   Floats all[3][4];
-  for (int k = 0; k < 3; ++k)
-    hn::LoadInterleaved4(df, p.corner[k][i], all[k][0], all[k][1], all[k][2], all[k][3]);
+  for (int k = 0; k < 3; ++k) {
+    if (pair.holds) {
+      const auto numbers = [&](int f) { return a.data + width * a.row(scene.mesh, pair.face[f], corner[k]); };
+      const float *one = numbers(0), *other = numbers(1);
+      for (std::size_t c = 0; c < width; ++c)
+        all[k][c] = hn::IfThenElse(pair.first, hn::Set(df, one[c]), hn::Set(df, other[c]));
+    } else {
+      hn::LoadInterleaved4(df, p.corner[corner[k]][i], all[k][0], all[k][1], all[k][2], all[k][3]);
+    }
+  }
   const hn::RebindToSigned<Float> di;
   const auto base = hn::Load(di, p.base + i);
   const auto first = hn::RebindMask(df, hn::Eq(base, hn::Zero(di)));
   const auto second = hn::RebindMask(df, hn::Eq(base, hn::Set(di, 1)));
-  const auto pick = [&](Floats x, Floats y, Floats z) {
-    return hn::IfThenElse(first, x, hn::IfThenElse(second, y, z));
-  };
+  const auto pick = [&](Floats x, Floats y, Floats z)
+                        HWY_ATTR { return hn::IfThenElse(first, x, hn::IfThenElse(second, y, z)); };
   for (std::size_t c = 0; c < width; ++c) {
     const Floats x = all[0][c], y = all[1][c], z = all[2][c];
-    interpolate_component(a, c, corners_of(pick(x, y, z), pick(y, z, x), pick(z, x, y)), at, rect, i, p);
+    const Corners corners =
+        turned ? corners_of(x, y, z) : corners_of(pick(x, y, z), pick(y, z, x), pick(z, x, y));
+    interpolate_component(a, c, corners, at, rect, i, p);
   }
 }
 
@@ -362,7 +385,7 @@ void interpolate_stretch(const Attribute<float>& a, const AttributeScene<float>&
   // All copies come before all uses: a wide load waits until the narrow stores it covers have left the store
   // queue.
   each_seen(seen, [&](int i) {
-    if (!one_face(p, i) || !one_base(p, i)) load_attribute<width>(a, i, p);
+    if (!p.pair_from(i).holds) load_attribute<width>(a, i, p);
   });
   each_seen(seen, [&](int i) { interpolate<width>(a, scene, at, rect, i, p); });
 }
@@ -387,16 +410,15 @@ void fill_stretch(const AttributeScene<float>& scene, const AttributePlanes<floa
     load_offsets(scene.pattern, at, i, p);
   });
   each_seen(seen, [&](int i) {
-    const auto each_half = [&](auto&& corners) HWY_ATTR {
-      for (int half = i; half < i + lanes; half += static_cast<int>(hn::Lanes(Double())))
-        differentiate ? weigh<true>(scene, corners(half), at, half, p)
-                      : weigh<false>(scene, corners(half), at, half, p);
-    };
-    if (one_face(p, i)) {
-      const LaneCorners same = same_corners(scene, p.face[i]);
-      each_half([&](int) HWY_ATTR { return same; });
+    const GridCorners corners(scene, p, i);
+    const LaneCorners lower = corners.half<false>(scene), upper = corners.half<true>(scene);
+    const int middle = i + static_cast<int>(hn::Lanes(Double()));
+    if (differentiate) {
+      weigh<true>(scene, lower, at, i, p);
+      weigh<true>(scene, upper, at, middle, p);
     } else {
-      each_half([&](int half) HWY_ATTR { return load_corners(scene, p, half); });
+      weigh<false>(scene, lower, at, i, p);
+      weigh<false>(scene, upper, at, middle, p);
     }
   });
   each_seen(seen, [&](int i) { put(planes.w, at, rect, i, seen_from(p, i), hn::Load(Float(), p.w + i)); });
