@@ -130,7 +130,7 @@ std::uint64_t bytes_with_pieces(const Mesh& mesh, std::size_t kept, const clip::
 }
 
 clip::Cutting cutting_of(const Inputs& in, const Params& p) {
-  return {in.mesh->camera && in.mesh->camera->reversed_z, p.planes == Planes::near_only, p.guard_band};
+  return {clip_space(in.mesh->camera.get()), p.planes == Planes::near_only, p.guard_band};
 }
 
 Verdict clipping(const Inputs& in, const Params& p, const Context& ctx) {

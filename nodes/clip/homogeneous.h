@@ -21,7 +21,7 @@ namespace frustum::clip {
 
 // Which planes cut. Faces wholly outside any one of the six sides of the view volume go in every case.
 struct Cutting {
-  bool reversed_z = false;
+  kernels::ClipSpace space = {};
   bool near_only = false;
   double guard_band = 1;  // >= 1: half-width, in w, of the band that cuts in x and y
 };
@@ -43,9 +43,9 @@ inline constexpr std::uint16_t not_finite = 0x8000;
 
 template <std::floating_point R>
 std::uint16_t vertex_code(const Cutting& c, const glm::vec<4, R>& p) {
-  const unsigned outside = kernels::volume_outcode(c.reversed_z, R(1), p);
+  const unsigned outside = kernels::volume_outcode(c.space, R(1), p);
   unsigned cutting =
-      c.guard_band == 1 ? outside : kernels::volume_outcode(c.reversed_z, static_cast<R>(c.guard_band), p);
+      c.guard_band == 1 ? outside : kernels::volume_outcode(c.space, static_cast<R>(c.guard_band), p);
   if (c.near_only) cutting &= 1;
   const bool finite = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(p.w);
   return static_cast<std::uint16_t>(outside | cutting << 8 | (finite ? 0U : not_finite));
@@ -169,7 +169,7 @@ template <std::floating_point R>
 Pieces<R> cut_faces(const Cutting& cutting, std::span<const glm::vec<4, R>> position,
                     std::span<const glm::uvec3> triangle, std::span<const std::uint32_t> faces) {
   constexpr std::size_t block = 1024;
-  const auto planes = kernels::view_volume(cutting.reversed_z, cutting.guard_band);
+  const auto planes = kernels::view_volume(cutting.space, cutting.guard_band);
   const auto old_vertices = static_cast<std::uint32_t>(position.size());
   std::vector<Pieces<R>> part((faces.size() + block - 1) / block);
   kernels::parallel_blocks(faces.size(), block, [&](std::size_t begin, std::size_t end) {

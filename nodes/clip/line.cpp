@@ -2,6 +2,7 @@
 
 #include "nodes/clip.h"
 #include "nodes/kernels/double_double.h"
+#include "runtime/buffers/camera.h"
 #include "runtime/buffers/points.h"
 #include "runtime/buffers/step_table.h"
 #include "runtime/buffers/value.h"
@@ -46,6 +47,7 @@ struct Params {
   Against against = Against::volume;
   glm::dvec2 low{-1}, high{1};
   std::vector<glm::dvec4> planes;
+  Conventions conventions = Conventions::gl;
   bool reversed_z = false;
   int rows = 10000;
 };
@@ -63,7 +65,8 @@ struct Planes {
 Planes planes_of(const Params& p) {
   switch (p.against) {
     case Against::volume:
-      return {volume_planes(p.reversed_z), {"near", "far", "left", "right", "bottom", "top"}};
+      return {volume_planes(clip_space(p.conventions, p.reversed_z)),
+              {"near", "far", "left", "right", "bottom", "top"}};
     case Against::rectangle:
       return {rectangle_planes(p.low, p.high), {"left", "right", "low", "high", "eye"}};
     case Against::planes: break;
@@ -212,10 +215,13 @@ NodeType nodes::clip_line() {
       .param("segments", &Params::segments, "Further segments in homogeneous coordinates, clipped first.")
       .param("connect", &Params::connect, "path joins each point to the next, pairs every two.")
       .param("against", &Params::against,
-             "volume is -w <= x, y, z <= w; rectangle lies between low and high; planes are your own.")
+             "volume is -w <= x, y, z <= w, or 0 <= z; rectangle lies between low and high; planes are your "
+             "own.")
       .param("low", &Params::low, "Left and lower side of the rectangle; raising it cuts more away.")
       .param("high", &Params::high, "Right and upper side of the rectangle; raising it cuts less away.")
       .param("planes", &Params::planes, "Rows [a, b, c, d]: inside is a x + b y + c z + d w >= 0.")
+      .param("conventions", &Params::conventions,
+             "Of the volume: in Vulkan and Direct3D its depth begins at 0, and Vulkan's y points down.")
       .param("reversed_z", &Params::reversed_z, "Of the volume: depth falls from w at near to 0 at far.")
       .param("rows", &Params::rows, "How many rows of tables are kept; raising it keeps more of a long list.",
              {.range = at_least(1)})

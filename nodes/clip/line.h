@@ -20,21 +20,17 @@
 #include <span>
 #include <vector>
 
+#include "nodes/kernels/camera.h"
 #include "nodes/kernels/double_double.h"
 #include "nodes/kernels/predicates.h"
 #include "nodes/kernels/vector.h"
 
 namespace frustum::clip {
 
-// -w <= x, y, z <= w, near plane first; reversed depth has 0 <= z.
-inline std::vector<glm::dvec4> volume_planes(bool reversed_z) {
-  const glm::dvec4 low(0, 0, 1, reversed_z ? 0 : 1), high(0, 0, -1, 1);
-  return {reversed_z ? high : low,
-          reversed_z ? low : high,
-          {1, 0, 0, 1},
-          {-1, 0, 0, 1},
-          {0, 1, 0, 1},
-          {0, -1, 0, 1}};
+// -w <= x, y, z <= w, or with 0 <= z; in the order of kernels::clip_planes.
+inline std::vector<glm::dvec4> volume_planes(kernels::ClipSpace space) {
+  const auto planes = kernels::clip_planes(space);
+  return {planes.begin(), planes.end()};
 }
 
 // low.x w <= x <= high.x w, and the same in y, in front of the eye (w >= 0).

@@ -35,7 +35,10 @@ struct Outputs {
 template <class R>
 std::vector<std::uint32_t> showing(const Mesh& mesh, const Params& p) {
   using cull::Rows;
-  const int wanted = p.drop == Side::back ? 1 : -1;
+  // Where y of clip space points down, what turns to the left on the screen turns to the right there.
+  const bool mirrored =
+      (mesh.space() == Space::clip || mesh.space() == Space::ndc) && clip_space(mesh.camera.get()).y_down;
+  const int wanted = (p.drop == Side::back) != mirrored ? 1 : -1;
   const auto faces = [&]<Rows rows, int width>() {
     using Point = glm::vec<width, R>;
     const auto column = mesh.real<R>("position");

@@ -26,7 +26,7 @@ namespace frustum::cull {
 //                             plane test of the notes, P(eye) > 0, without a rounded plane (errata E24)
 //   eye space, orthographic   (x, y, 1): the sign of n_z (errata E23)
 //   clip space                (x, y, w): right for corners on either side of the eye, and before any divide
-//   NDC                       (x, y, 1)
+//   NDC                       (x, y, 1); both with the other sign where their y points down
 //   screen                    (x, -y, 1): its y points down
 // NaN and infinite corners make 0.
 enum class Rows : std::uint8_t { eye_perspective, flat, clip, screen };

@@ -22,12 +22,12 @@ Verdict outside(const Inputs& in, const Params&, const Context&) {
 
 Outputs run(const Inputs& in, const Params&, Context& ctx) {
   if (ctx.simulates("outside_faces")) return {in.mesh};
-  const bool reversed_z = in.mesh->camera && in.mesh->camera->reversed_z;
+  const kernels::ClipSpace space = clip_space(in.mesh->camera.get());
   std::vector<std::uint32_t> faces;
   ctx.real([&]<class R>() {
     const auto column = in.mesh->real<R>("position");
-    faces = cull::faces_not_outside<R>(reversed_z, column->template values<glm::vec<4, R>>(),
-                                       in.mesh->triangles());
+    faces =
+        cull::faces_not_outside<R>(space, column->template values<glm::vec<4, R>>(), in.mesh->triangles());
   });
   ctx.count("triangles_culled", in.mesh->faces() - faces.size());
   if (faces.size() == in.mesh->faces()) return {in.mesh};

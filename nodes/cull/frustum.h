@@ -19,12 +19,12 @@ namespace frustum::cull {
 // volume is lost. A NaN coordinate counts as outside both of its sides. Cost: one pass over the vertices, one
 // over the faces.
 template <std::floating_point R>
-std::vector<std::uint32_t> faces_not_outside(bool reversed_z, std::span<const glm::vec<4, R>> position,
+std::vector<std::uint32_t> faces_not_outside(kernels::ClipSpace space,
+                                             std::span<const glm::vec<4, R>> position,
                                              std::span<const glm::uvec3> triangle) {
   std::vector<std::uint8_t> code(position.size());
   kernels::parallel_blocks(position.size(), kernels::usual_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      code[i] = kernels::volume_outcode(reversed_z, R(1), position[i]);
+    for (std::size_t i = begin; i < end; ++i) code[i] = kernels::volume_outcode(space, R(1), position[i]);
   });
   return kernels::indices_where(triangle.size(), [&](std::size_t f) {
     const auto& t = triangle[f];

@@ -1,6 +1,7 @@
 #pragma once
 // From world space to pixels: view, projection, divide, viewport. Each step with its inverse in closed form.
-// Right-handed; the camera looks along -z of eye space, y up; NDC is [-1, 1]^3; pixels have y down.
+// Right-handed; the camera looks along -z of eye space, y up; x and y of NDC are in [-1, 1], y up or down and depth
+// as ClipSpace says; pixels have y down.
 
 #include <array>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include <span>
 
 #include "nodes/kernels/affine.h"
+#include "nodes/kernels/clip_space.h"
 #include "nodes/kernels/elementary.h"
 #include "nodes/kernels/parallel.h"
 #include "nodes/kernels/vector.h"
@@ -57,40 +59,54 @@ inline LookAt look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm
 // An orthographic box is moved first and scaled then, z_clip = (z + S) Z: where it is thin and far away, z Z
 // and D are large and cancel (hard case PRJ-07). S is the unevaluated sum of two numbers. In the form of OpenGL: errata E9, the notes' matrices have rank 3.
 struct Projection {
-  glm::dvec2 scale;     // X, Y
+  glm::dvec2 scale;     // X, Y; Y < 0 where y of clip space points down
   double depth_scale;   // Z
   double depth_offset;  // D = S Z
   bool perspective;
-  bool reversed_z;
+  ClipSpace space;
   TwoTerms<double> depth_shift = {0, 0};  // S; 0 for a perspective
 };
 
-// Depth runs from -1 at near_z to 1 at far_z; reversed, from 1 to 0, which gives float depth its even
-// relative resolution. Both ends are met within 2 u f / (f - n). far_z may be infinite. Requires 0 < near_z < far_z, 0 < fov_y < pi, aspect = width /
-// height > 0.
-inline Projection perspective(double fov_y, double aspect, double near_z, double far_z, bool reversed_z) {
+// Depth runs from -1 at near_z to 1 at far_z, or from 0 to 1; or from 1 to 0, which gives float depth its even
+// relative resolution. Both ends are met within 2 u f / (f - n). far_z may be infinite. Requires 0 < near_z < far_z,
+// 0 < fov_y < pi, aspect = width / height > 0.
+inline Projection perspective(double fov_y, double aspect, double near_z, double far_z,
+                              ClipSpace space = {}) {
   const double y = 1 / tan(fov_y / 2);
-  Projection p{{y / aspect, y}, 0, 0, true, reversed_z};
+  Projection p{{y / aspect, space.y_down ? -y : y}, 0, 0, true, space};
   const bool infinite = far_z == std::numeric_limits<double>::infinity();
   // Z rounded once, then D from the Z that is stored, rounded once: what Z lost cancels at the near plane.
   const TwoTerms<double> depth = two_sum(far_z, -near_z);
-  if (reversed_z) {
-    p.depth_scale = infinite ? 0 : quotient<double>({near_z, 0.0}, depth).hi;
-    p.depth_offset = product(two_sum(p.depth_scale, 1.0), {near_z, 0}).hi;
-  } else {
-    p.depth_scale = infinite ? -1 : -quotient(two_sum(far_z, near_z), depth).hi;
-    p.depth_offset = product(two_sum(p.depth_scale, -1.0), {near_z, 0}).hi;
+  switch (space.depth) {
+    case DepthRange::one_to_zero:
+      p.depth_scale = infinite ? 0 : quotient<double>({near_z, 0.0}, depth).hi;
+      p.depth_offset = product(two_sum(p.depth_scale, 1.0), {near_z, 0}).hi;
+      break;
+    case DepthRange::zero_to_one:
+      p.depth_scale = infinite ? -1 : -quotient<double>({far_z, 0.0}, depth).hi;
+      p.depth_offset = p.depth_scale * near_z;
+      break;
+    case DepthRange::minus_one_to_one:
+      p.depth_scale = infinite ? -1 : -quotient(two_sum(far_z, near_z), depth).hi;
+      p.depth_offset = product(two_sum(p.depth_scale, -1.0), {near_z, 0}).hi;
+      break;
   }
   return p;
 }
 
 // A view volume `height` high between near_z and far_z. Requires height > 0, aspect > 0, finite near_z <
 // far_z.
-inline Projection orthographic(double height, double aspect, double near_z, double far_z, bool reversed_z) {
+inline Projection orthographic(double height, double aspect, double near_z, double far_z,
+                               ClipSpace space = {}) {
   const double y = 2 / height, depth = far_z - near_z;
+  const glm::dvec2 scale(y / aspect, space.y_down ? -y : y);
+  switch (space.depth) {
+    case DepthRange::one_to_zero: return {scale, 1 / depth, far_z / depth, false, space, {far_z, 0}};
+    case DepthRange::zero_to_one: return {scale, -1 / depth, -near_z / depth, false, space, {near_z, 0}};
+    case DepthRange::minus_one_to_one: break;
+  }
   const auto ends = two_sum(near_z, far_z);
-  if (reversed_z) return {{y / aspect, y}, 1 / depth, far_z / depth, false, true, {far_z, 0}};
-  return {{y / aspect, y}, -2 / depth, -ends.hi / depth, false, false, {ends.hi / 2, ends.lo / 2}};
+  return {scale, -2 / depth, -ends.hi / depth, false, space, {ends.hi / 2, ends.lo / 2}};
 }
 
 inline glm::dmat4 matrix_of(const Projection& p) {
@@ -143,29 +159,37 @@ inline glm::dvec3 eye_from_ndc(const Projection& p, const glm::dvec3& ndc) {
   return {ndc.x * distance / p.scale.x, ndc.y * distance / p.scale.y, -distance};
 }
 
-// The view volume's sides, near first, as half-spaces of homogeneous points: inside where dot(plane, p) >= 0.
-inline std::array<glm::dvec4, 6> clip_planes(bool reversed_z, double guard_band = 1) {
-  const glm::dvec4 plus(0, 0, 1, 1), minus(0, 0, -1, 1), above_zero(0, 0, 1, 0);
-  return {reversed_z ? minus : plus,       reversed_z ? above_zero : minus,
-          glm::dvec4(1, 0, 0, guard_band), glm::dvec4(-1, 0, 0, guard_band),
-          glm::dvec4(0, 1, 0, guard_band), glm::dvec4(0, -1, 0, guard_band)};
+// The view volume's sides as half-spaces of homogeneous points: inside where dot(plane, p) >= 0. In order near, far,
+// left, right, bottom, top of the picture.
+inline std::array<glm::dvec4, 6> clip_planes(ClipSpace space = {}, double guard_band = 1) {
+  const glm::dvec4 low(0, 0, 1, -least_depth(space.depth)), high(0, 0, -1, 1);
+  const bool reversed = is_reversed(space.depth);
+  const double up = space.y_down ? -1 : 1;
+  return {reversed ? high : low,
+          reversed ? low : high,
+          glm::dvec4(1, 0, 0, guard_band),
+          glm::dvec4(-1, 0, 0, guard_band),
+          glm::dvec4(0, up, 0, guard_band),
+          glm::dvec4(0, -up, 0, guard_band)};
 }
 
 // The same planes for points of the space that `projection * view` comes from, not normalised.
 // Source: Gribb & Hartmann 2001.
 inline std::array<glm::dvec4, 6> frustum_planes(const Projection& projection, const Affine& eye_from_world) {
   const glm::dmat4 to_planes = glm::transpose(matrix_of(projection) * matrix_of(eye_from_world));
-  auto planes = clip_planes(projection.reversed_z);
+  auto planes = clip_planes(projection.space);
   for (auto& plane : planes) plane = to_planes * plane;
   return planes;
 }
 
-// NDC to pixels: x_px = (x + 1) W / 2, y_px = (1 - y) H / 2 (errata E10 and E11), z as it is. In double, so
-// that for W up to 2^14 the NDC of a pixel centre, rounded to float, comes back within 2^-10 px of it.
+// NDC to pixels: x_px = (x + 1) W / 2, y_px = (1 - y) H / 2 (errata E10 and E11), or (1 + y) H / 2 where y of NDC
+// points down already; z as it is. In double, so that for W up to 2^14 the NDC of a pixel centre, rounded to float,
+// comes back within 2^-10 px of it.
 struct Viewport {
   double half_width, half_height;  // pixels
-  explicit Viewport(const glm::ivec2& resolution)
-      : half_width(resolution.x / 2.0), half_height(resolution.y / 2.0) {}
+  double up;                       // the sign of NDC y at the top of the picture
+  explicit Viewport(const glm::ivec2& resolution, bool y_down = false)
+      : half_width(resolution.x / 2.0), half_height(resolution.y / 2.0), up(y_down ? -1 : 1) {}
 
   template <std::floating_point R>
   R x_px(R x_ndc) const {
@@ -173,11 +197,11 @@ struct Viewport {
   }
   template <std::floating_point R>
   R y_px(R y_ndc) const {
-    return static_cast<R>((1 - static_cast<double>(y_ndc)) * half_height);
+    return static_cast<R>((1 - up * static_cast<double>(y_ndc)) * half_height);
   }
   // Subtracting first keeps the middle at 0 and pixel centres that mirror each other so, bit for bit.
   glm::dvec2 ndc_from_px(const glm::dvec2& px) const {
-    return {(px.x - half_width) / half_width, (half_height - px.y) / half_height};
+    return {(px.x - half_width) / half_width, up * ((half_height - px.y) / half_height)};
   }
 };
 

@@ -18,6 +18,8 @@
 #include <glm/vec4.hpp>
 #include <limits>
 
+#include "nodes/kernels/clip_space.h"
+
 namespace frustum::kernels {
 
 // Points with sign * p[axis] + bound * p.w >= 0. `bound` is 1, the guard band's half-width, or 0.
@@ -35,12 +37,14 @@ R clip_distance(const ClipPlane& plane, const glm::vec<4, R>& p) {
   return side + static_cast<R>(plane.bound) * p.w;
 }
 
-// The view volume -w <= x, y, z <= w, near plane first; reversed depth has 0 <= z <= w. The guard band widens
-// x and y.
-inline std::array<ClipPlane, 6> view_volume(bool reversed_z, double guard_band = 1) {
-  const ClipPlane low{2, 1, reversed_z ? 0.0 : 1.0}, high{2, -1, 1};
-  return {reversed_z ? high : low, reversed_z ? low : high, ClipPlane{0, 1, guard_band},
-          {0, -1, guard_band},     {1, 1, guard_band},      {1, -1, guard_band}};
+// The view volume -w <= x, y, z <= w, or with 0 <= z: near, far, left, right, bottom and top of the picture, so that
+// what one API cuts first the others do. The guard band widens x and y.
+inline std::array<ClipPlane, 6> view_volume(ClipSpace space = {}, double guard_band = 1) {
+  const ClipPlane low{2, 1, -least_depth(space.depth)}, high{2, -1, 1};
+  const bool reversed = is_reversed(space.depth);
+  const double up = space.y_down ? -1 : 1;
+  return {reversed ? high : low, reversed ? low : high, ClipPlane{0, 1, guard_band},
+          {0, -1, guard_band},   {1, up, guard_band},   {1, -up, guard_band}};
 }
 
 // Bit i is set where p lies outside plane i, or where its distance is NaN.
@@ -53,13 +57,15 @@ std::uint8_t outcode(const std::array<ClipPlane, 6>& planes, const glm::vec<4, R
 
 // The same code for a whole view volume, without the table of planes. Requires that w is not NaN.
 template <std::floating_point R>
-std::uint8_t volume_outcode(bool reversed_z, R guard_band, const glm::vec<4, R>& p) {
+std::uint8_t volume_outcode(ClipSpace space, R guard_band, const glm::vec<4, R>& p) {
   const auto bit = [](bool inside, unsigned i) { return inside ? 0U : 1U << i; };
-  const R band = guard_band * p.w;
-  const bool low = (reversed_z ? p.z : p.z + p.w) >= 0, high = p.w - p.z >= 0;
-  return static_cast<std::uint8_t>(bit(reversed_z ? high : low, 0) | bit(reversed_z ? low : high, 1) |
-                                   bit(p.x + band >= 0, 2) | bit(band - p.x >= 0, 3) |
-                                   bit(p.y + band >= 0, 4) | bit(band - p.y >= 0, 5));
+  const R band = guard_band * p.w, y = space.y_down ? -p.y : p.y;
+  const bool reversed = is_reversed(space.depth);
+  const bool low = (space.depth == DepthRange::minus_one_to_one ? p.z + p.w : p.z) >= 0;
+  const bool high = p.w - p.z >= 0;
+  return static_cast<std::uint8_t>(bit(reversed ? high : low, 0) | bit(reversed ? low : high, 1) |
+                                   bit(p.x + band >= 0, 2) | bit(band - p.x >= 0, 3) | bit(y + band >= 0, 4) |
+                                   bit(band - y >= 0, 5));
 }
 
 // A corner of a clipped triangle: where it is, and what it is of the three corners it comes from.

@@ -202,7 +202,7 @@ class Sorter {
       const glm::dvec2 a = kernels::to_px(faces_[face].corner[k]);
       const glm::dvec2 b = kernels::to_px(faces_[face].corner[(k + 1) % 3]);
       const double reach = kernels::place_error_px * (std::fabs(b.x - a.x) + std::fabs(b.y - a.y));
-      kernels::DepthRange d;
+      kernels::DepthSpan d;
       for (const glm::dvec2& c : piece(p).outline) d.add(kernels::side_function(faces_[face], k, c));
       if (d.least >= -reach || d.greatest <= reach) continue;
       cut(p, kernels::Cut::Kind::side, 4 * face + k, q);

@@ -91,7 +91,7 @@ Outline clipped(const Outline& outline, const Distance& distance) {
 
 // The distances of an outline's corners from where a plane would cut it: depth of the piece's face minus
 // depth of the other face. Negative is nearer.
-struct DepthRange {
+struct DepthSpan {
   double least = std::numeric_limits<double>::infinity();
   double greatest = -std::numeric_limits<double>::infinity();
   void add(double d) {
@@ -99,13 +99,13 @@ struct DepthRange {
     greatest = d > greatest ? d : greatest;
   }
 };
-inline DepthRange depth_range(const Outline& outline, const FaceDepth& face) {
-  DepthRange r;
+inline DepthSpan depth_range(const Outline& outline, const FaceDepth& face) {
+  DepthSpan r;
   for (const glm::dvec2& p : outline) r.add(face.at(p));
   return r;
 }
-inline DepthRange depth_difference(const Outline& outline, const FaceDepth& face, const FaceDepth& other) {
-  DepthRange r;
+inline DepthSpan depth_difference(const Outline& outline, const FaceDepth& face, const FaceDepth& other) {
+  DepthSpan r;
   for (const glm::dvec2& p : outline) r.add(face.at(p) - other.at(p));
   return r;
 }

@@ -36,7 +36,7 @@ namespace detail {
 using kernels::PlacedPiece;
 using kernels::ScreenFace;
 
-inline double key_of(Key key, const kernels::DepthRange& d) {
+inline double key_of(Key key, const kernels::DepthSpan& d) {
   if (key == Key::nearest) return d.least;
   return key == Key::middle ? (d.least + d.greatest) / 2 : d.greatest;
 }
@@ -161,7 +161,7 @@ class Sorter {
     const PlacedPiece &p = pieces_[i], &q = pieces_[j];
     ++out.comparisons;
     if (kernels::beside(p, q, 0) || kernels::outlines_apart(p, q, faces_)) return;
-    const kernels::DepthRange d = kernels::depth_in_overlap(p, q, faces_);
+    const kernels::DepthSpan d = kernels::depth_in_overlap(p, q, faces_);
     const double level = faces_[p.piece.face].depth.level + faces_[q.piece.face].depth.level;
     const auto hides = [&](std::uint32_t before, std::uint32_t after) {
       watch_.claim(2 * sizeof before);

@@ -11,7 +11,7 @@ namespace frustum::kernels {
 struct PlacedPiece {
   Piece piece;
   glm::dvec2 low{0}, high{0};
-  DepthRange depth;
+  DepthSpan depth;
 
   // An empty outline gives an empty box, which is beside everything.
   static PlacedPiece make(Piece piece, std::span<const ScreenFace> faces) {
@@ -44,7 +44,7 @@ inline Side side_of(const Piece& p, const FaceDepth& depth, std::uint32_t plane,
                     double tolerance) {
   if (const int known = p.known_side(Cut::Kind::plane, plane); known != 0)
     return known > 0 ? Side::before : Side::behind;
-  const DepthRange d = depth_difference(p.outline, depth, of);
+  const DepthSpan d = depth_difference(p.outline, depth, of);
   const bool behind = d.least >= -tolerance, before = d.greatest <= tolerance;
   if (behind) return before ? Side::level : Side::behind;
   return before ? Side::before : Side::across;
@@ -100,8 +100,8 @@ inline bool outlines_apart(const PlacedPiece& p, const PlacedPiece& q, std::span
 
 // The range of the depth of p minus the depth of q where their outlines overlap, each as far as its samples may
 // reach; empty (least > greatest) where they do not.
-inline DepthRange depth_in_overlap(const PlacedPiece& p, const PlacedPiece& q,
-                                   std::span<const ScreenFace> faces) {
+inline DepthSpan depth_in_overlap(const PlacedPiece& p, const PlacedPiece& q,
+                                  std::span<const ScreenFace> faces) {
   const double slack = p.slack_px() + q.slack_px();
   Outline both = p.piece.outline;
   const Outline& other = q.piece.outline;

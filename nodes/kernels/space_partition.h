@@ -110,7 +110,7 @@ class Builder {
       return kernels::side_of(p, own, of, plane, own.level + plane.slope_error());
     }
     const glm::length_t axis = kind == Cut::Kind::column ? 0 : 1;
-    kernels::DepthRange r;
+    kernels::DepthSpan r;
     for (const glm::dvec2& q : p.outline) r.add(q[axis]);
     if (r.greatest + slack(p) <= of) return kernels::Side::before;
     return r.least - slack(p) >= of ? kernels::Side::behind : kernels::Side::across;
@@ -140,7 +140,7 @@ class Builder {
     const std::size_t n = std::min(pieces.size(), judged);
     std::vector<double> at;
     for (std::size_t i = 0; i < n; ++i) {
-      kernels::DepthRange r;
+      kernels::DepthSpan r;
       for (const glm::dvec2& q : pieces[i * pieces.size() / n].outline) r.add(q[axis]);
       at.push_back((r.least + r.greatest) / 2);
     }

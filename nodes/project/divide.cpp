@@ -51,8 +51,8 @@ Outputs run(const Inputs& in, const Params&, Context& ctx) {
 NodeType nodes::project_divide() {
   return node("project.divide", run)
       .doc(
-          "Divides by w: clip space to normalised device coordinates, where the view volume is the cube from "
-          "-1 to 1.")
+          "Divides by w: clip space to normalised device coordinates, where x and y of the view volume run "
+          "from -1 to 1.")
       .cite("Errata E12: only after clipping in homogeneous space")
       .covers(20)
       .input("mesh", &Inputs::mesh, "A clipped mesh in clip space.", {.space = Space::clip})

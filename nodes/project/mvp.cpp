@@ -42,8 +42,8 @@ kernels::Projection projection_of(const Camera& c, project::Volume volume) {
                     "the camera's near and far planes, angle, height or resolution make no volume",
                     at_input("camera"));
   if (volume == project::Volume::orthographic)
-    return kernels::orthographic(c.height, c.aspect(), c.near_z, c.far_z, c.reversed_z);
-  return kernels::perspective(c.fov_y, c.aspect(), c.near_z, c.far_z, c.reversed_z);
+    return kernels::orthographic(c.height, c.aspect(), c.near_z, c.far_z, clip_space(&c));
+  return kernels::perspective(c.fov_y, c.aspect(), c.near_z, c.far_z, clip_space(&c));
 }
 
 // How well each factor, and their product, can be undone.
@@ -67,7 +67,7 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
   const glm::dmat4 eye_from_world = kernels::matrix_of(view),
                    world_from_eye = kernels::matrix_of(kernels::inverse(view));
   const glm::dmat4 clip_from_eye = kernels::matrix_of(projection_of(c, p.volume));
-  const glm::dmat4 pixels_from_ndc = project::viewport_matrix(c.resolution);
+  const glm::dmat4 pixels_from_ndc = project::viewport_matrix(viewport_of(c));
   glm::dmat4 all = model;
   for (const glm::dmat4& next : {eye_from_world, clip_from_eye, pixels_from_ndc})
     all = kernels::matrix_product(next, all);
@@ -97,7 +97,7 @@ NodeType nodes::project_mvp() {
              "M_mod, from the model to the world; the identity where it is left out.")
       .param("volume", &Params::volume, "Whether things farther away are smaller.")
       .output("matrix", &Outputs::matrix, "The product; divide x, y and z by w after it.")
-      .output("viewport", &Outputs::viewport, "M_vp: NDC to pixels, y down.")
+      .output("viewport", &Outputs::viewport, "M_vp: NDC to pixels, whose y points down.")
       .output("projection", &Outputs::projection, "M_proj: eye to clip space.")
       .output("view", &Outputs::view, "M_cam^-1: world to eye space.")
       .output("model", &Outputs::model, "M_mod, as it came.")

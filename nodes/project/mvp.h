@@ -7,12 +7,12 @@
 
 namespace frustum::project {
 
-// NDC to pixels, y down: x_px = (x + 1) W / 2, y_px = (1 - y) H / 2, z and w as they are (errata E10).
-inline glm::dmat4 viewport_matrix(const glm::ivec2& resolution) {
-  const kernels::Viewport v(resolution);
+// NDC to pixels, y down: x_px = (x + 1) W / 2, y_px = (1 - y) H / 2, or (1 + y) H / 2 where y of NDC points down;
+// z and w as they are (errata E10).
+inline glm::dmat4 viewport_matrix(const kernels::Viewport& v) {
   glm::dmat4 m(1.0);
   m[0][0] = v.half_width, m[3][0] = v.half_width;
-  m[1][1] = -v.half_height, m[3][1] = v.half_height;
+  m[1][1] = -v.up * v.half_height, m[3][1] = v.half_height;
   return m;
 }
 

@@ -20,7 +20,7 @@ kernels::Projection volume_of(const Camera& c) {
   const double aspect = c.resolution.y > 0 ? c.aspect() : 0;
   const auto fault = project::fault_of_orthographic(c.height, aspect, c.near_z, c.far_z);
   if (!fault.empty()) throw NodeError("impossible_camera", std::string(fault), at_input("camera"));
-  return kernels::orthographic(c.height, aspect, c.near_z, c.far_z, c.reversed_z);
+  return kernels::orthographic(c.height, aspect, c.near_z, c.far_z, clip_space(&c));
 }
 
 Outputs run(const Inputs& in, const Params&, Context& ctx) {

@@ -14,7 +14,8 @@
 
 namespace frustum::project {
 
-// p_screen[i] = (x_px, y_px, z, 1/w) with x_px = (x/w + 1) W/2 and y_px = (1 - y/w) H/2, y down (errata E10),
+// p_screen[i] = (x_px, y_px, z, 1/w) with x_px = (x/w + 1) W/2 and y_px = (1 - y/w) H/2, y down (errata E10), or
+// (1 + y/w) H/2 where y of clip space points down already,
 // where w > 0 and all four are finite; elsewhere zeros with no_point[i] = 1: the point is on or behind the
 // eye's plane, or was not finite. Returns how many of those there are. Quotients are rounded to R first, so
 // that the pixels are those of the NDC that project.divide shows. Without `divides`, which requires w = 1

@@ -10,6 +10,7 @@
 #include "nodes/rasterize.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/mesh.h"
+#include "runtime/buffers/screen_view.h"
 #include "runtime/core/node_type.h"
 
 namespace frustum {
@@ -252,7 +253,8 @@ void fill(const Interpolator<R>& s, const Tile& from, const Tile& to) {
       check_and_copy(ids.row(sample, y - r.y0), r.width(), faces,
                      to.has(0) ? to.row<std::uint32_t>(0, sample, y) : nullptr);
 
-  const kernels::ScreenMesh<R> screen{s.position->template values<glm::vec<4, R>>(), s.mesh->triangles(), {}};
+  const kernels::ScreenMesh<R> screen{
+      s.position->template values<glm::vec<4, R>>(), s.mesh->triangles(), {}, corner_bits_of(*s.mesh)};
   std::vector<Attribute<R>> attributes;
   for (const Source& source : s.sources) {
     const auto a = wanted<R>(source, to);

@@ -38,7 +38,7 @@ struct Outputs {
 struct State {
   Precision precision;
   Params look;
-  bool reversed_z;
+  kernels::DepthRange depth;
   wireframe::LineBins bins;
   Ref<SamplePattern> pattern;
   Ref<Mesh> seen;
@@ -107,8 +107,8 @@ wireframe::LineBins lines_of(const Inputs& in, const Params& p, Context& ctx) {
   const Mesh& mesh = *in.mesh;
   const Camera& camera = camera_of(mesh);
   const double reach = p.width / 2 + 1;
-  const auto planes = wireframe::planes_around(camera.resolution, camera.reversed_z, reach);
-  const kernels::Viewport viewport(camera.resolution);
+  const auto planes = wireframe::planes_around(camera.resolution, clip_space(&camera), reach);
+  const kernels::Viewport viewport = viewport_of(camera);
   std::vector<wireframe::Line> lines;
   ctx.real([&]<class R>() {
     const auto position = mesh.real<R>("position");
@@ -159,7 +159,7 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   Frame frame = frame_of(in, camera_of(*in.mesh), ctx.precision);
   State s{.precision = ctx.precision,
           .look = p,
-          .reversed_z = in.mesh->camera->reversed_z,
+          .depth = clip_space(in.mesh->camera.get()).depth,
           .bins = lines_of(in, p, ctx),
           .pattern = frame.pattern,
           .seen = {},
@@ -257,7 +257,7 @@ class Drawing {
     const glm::uvec3& t = triangles[face];
     const auto p = s_.screen->template values<glm::vec<4, R>>();
     const double slope = wireframe::depth_slope(p[t.x], p[t.y], p[t.z]);
-    return wireframe::is_behind(near.z, depth(k, x, y), slope, near.distance, s_.reversed_z);
+    return wireframe::is_behind(near.z, depth(k, x, y), slope, near.distance, s_.depth);
   }
 
   double depth(int k, int x, int y) const {

@@ -26,9 +26,9 @@ struct Line {
 };
 
 // The view volume, widened in x and y so that a line this far outside the picture is still there.
-inline std::array<kernels::ClipPlane, 6> planes_around(const glm::ivec2& resolution, bool reversed_z,
+inline std::array<kernels::ClipPlane, 6> planes_around(const glm::ivec2& resolution, kernels::ClipSpace space,
                                                        double margin_px) {
-  auto planes = kernels::view_volume(reversed_z);
+  auto planes = kernels::view_volume(space);
   planes[2].bound = planes[3].bound = 1 + 2 * margin_px / resolution.x;
   planes[4].bound = planes[5].bound = 1 + 2 * margin_px / resolution.y;
   return planes;
@@ -163,9 +163,10 @@ double depth_slope(const glm::vec<4, R>& p, const glm::vec<4, R>& q, const glm::
 // line. On the face's plane its depth may change by slope times distance on the way to the line; half a pixel
 // more is granted for faces that bend, and 2^-22 for the rounding of float depths. So the faces that meet at
 // an edge never hide it, and what is hidden can at most show where it is hidden by less than a pixel or so.
-inline bool is_behind(double z_line, double z_face, double slope, double distance, bool reversed_z) {
+inline bool is_behind(double z_line, double z_face, double slope, double distance,
+                      kernels::DepthRange depth) {
   const double slack = slope * (distance + 0.5) + 0x1p-22;
-  return reversed_z ? z_line < z_face - slack : z_line > z_face + slack;
+  return kernels::is_reversed(depth) ? z_line < z_face - slack : z_line > z_face + slack;
 }
 
 }  // namespace frustum::wireframe

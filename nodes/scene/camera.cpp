@@ -17,6 +17,8 @@ struct Params {
   std::optional<double> far = 1000;
   double height = 2;
   bool reversed_z = false;
+  Conventions conventions = Conventions::gl;
+  int subpixel_bits = 8;
   glm::ivec2 resolution{1280, 720};
 };
 struct Outputs {
@@ -28,6 +30,10 @@ double far_of(const Params& p) { return p.far.value_or(std::numeric_limits<doubl
 void check(const Params& p) {
   const auto fault = scene::fault_of_camera(p.eye, p.target, p.up, p.near, far_of(p));
   if (!fault.empty()) throw NodeError("impossible_camera", std::string(fault.what), at_param(fault.param));
+  if (p.conventions == Conventions::d3d && p.subpixel_bits != 8)
+    throw NodeError("impossible_camera",
+                    "Direct3D snaps corners to 8 bits below a pixel, no more and no fewer",
+                    at_param("subpixel_bits"));
 }
 
 Outputs run(const Inputs&, const Params& p, Context&) {
@@ -37,6 +43,7 @@ Outputs run(const Inputs&, const Params& p, Context&) {
   c->near_z = p.near, c->far_z = far_of(p);
   c->height = p.height;
   c->reversed_z = p.reversed_z;
+  c->conventions = p.conventions, c->subpixel_bits = p.subpixel_bits;
   c->resolution = p.resolution;
   return {std::move(c)};
 }
@@ -46,6 +53,11 @@ Outputs run(const Inputs&, const Params& p, Context&) {
 NodeType nodes::scene_camera() {
   return node("scene.camera", run)
       .doc("Where the picture is taken from: place, direction, view volume and size in pixels.")
+      .cite(
+          "OpenGL 4.6 core profile, 13.6 to 13.8; Vulkan 1.3, Primitive Clipping and Controlling the "
+          "Viewport")
+      .cite(
+          "Microsoft, Direct3D 11.3 functional specification: clipping, 16.8 fixed point, the leading vertex")
       .covers(22)
       .param("eye", &Params::eye, "Where the camera stands, in world space.", {.unit = "world units"})
       .param("target", &Params::target, "The point in the middle of the picture.", {.unit = "world units"})
@@ -64,6 +76,14 @@ NodeType nodes::scene_camera() {
              "Depth falls from 1 at near to 0 at far, which resolves far distances better.")
       .knob_of_taste({"false", "true"},
                      "In single precision, steps of depth grow like z^2 one way and like z the other.")
+      .param("conventions", &Params::conventions,
+             "Whose depth range, direction of y in clip space, and corner that flat faces take their values "
+             "from.")
+      .knob_of_taste({"gl", "vulkan", "d3d"}, "The same picture, by other numbers on the way there.")
+      .param("subpixel_bits", &Params::subpixel_bits,
+             "Corners of triangles snap to 2^-bits px; raising it keeps them truer. Direct3D has 8.",
+             {.range = between(4, 8)})
+      .knob({"4", "5", "6", "7", "8"}, "Corners are off by up to half a step, 2^-(bits + 1) px.")
       .param("resolution", &Params::resolution,
              "Width and height of the picture; their ratio is that of the view.",
              {.unit = "px", .range = between(1, 65536)})

@@ -33,7 +33,8 @@ struct Map {
   shadow_map::View view;
   Ref<Depth> depth;
   Tile rows;
-  bool single;  // precision of its numbers
+  bool single;     // precision of its numbers
+  double step_px;  // of the grid that its corners snapped to
 
   double at(int x, int y) const {
     return single ? static_cast<double>(rows.row<const float>(0, 0, y)[x])
@@ -78,12 +79,13 @@ Map map_of(const Inputs& in, std::size_t i, bool place) {
                     fmt::format("map {} has {} samples a pixel; a shadow map has one", i, f.samples()),
                     at_input(input));
   const kernels::Projection volume =
-      place ? kernels::perspective(c.fov_y, c.aspect(), c.near_z, c.far_z, c.reversed_z)
-            : kernels::orthographic(c.height, c.aspect(), c.near_z, c.far_z, c.reversed_z);
-  return {{kernels::look_at(c.eye, c.target, c.up).eye_from_world, volume, kernels::Viewport(c.resolution)},
+      place ? kernels::perspective(c.fov_y, c.aspect(), c.near_z, c.far_z, clip_space(&c))
+            : kernels::orthographic(c.height, c.aspect(), c.near_z, c.far_z, clip_space(&c));
+  return {{kernels::look_at(c.eye, c.target, c.up).eye_from_world, volume, viewport_of(c)},
           in.maps[i],
           in.maps[i]->raster.view(),
-          f.planes[0].kind == PlaneKind::f32};
+          f.planes[0].kind == PlaneKind::f32,
+          std::exp2(-c.subpixel_bits)};
 }
 
 void add_lamps(const Inputs& in, State& s) {
@@ -139,9 +141,10 @@ double reach_of(const State& s, const Lamp& lamp, const kernels::SeenFace& face,
   const auto seen = shadow_map::seen_from_light(map.view, face, p);
   if (!seen) return 1;
   const double u = map.single ? 0x1p-24 : 0x1p-53;
-  const double tolerance = shadow_map::depth_tolerance(*seen, face, s.params.bias, s.params.radius + 0.5, u);
-  return shadow_map::share_of_light(*seen, tolerance, s.params.radius, map.size(), map.view.volume.reversed_z,
-                                    [&](int x, int y) { return map.at(x, y); });
+  const double tolerance =
+      shadow_map::depth_tolerance(*seen, face, s.params.bias, s.params.radius + 0.5, map.step_px, u);
+  return shadow_map::share_of_light(*seen, tolerance, s.params.radius, map.size(),
+                                    map.view.volume.space.depth, [&](int x, int y) { return map.at(x, y); });
 }
 
 void tile(const State& s, const TilesOf<Inputs>& in, const TilesOf<Outputs>& out, Arena& arena) {

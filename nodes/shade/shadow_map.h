@@ -61,13 +61,13 @@ inline std::optional<Seen> seen_from_light(const View& v, const kernels::SeenFac
 
 /// By how much a point's depth may lie behind what the map shows at a texel whose middle is at most `reach_px` away in x and y,
 /// and still be the same surface: `bias` times what its face's plane changes over that way (1 is enough for a
-/// plane), and rounding: corners of both pictures snap to 2^-8 px, each point lies within its face's slack, depths of
+/// plane), and rounding: corners in the map snap to a grid of `step_px`, each point lies within its face's slack, depths of
 /// unit roundoff u have gone through at most 16 roundings.
 inline double depth_tolerance(const Seen& s, const kernels::SeenFace& face, double bias, double reach_px,
-                              double u) {
+                              double step_px, double u) {
   const double slope = s.z_by_x_px + s.z_by_y_px;
   const double texel = bias > 0 ? bias * reach_px * slope : 0;  // not 0 times infinity
-  return texel + slope * 0x1p-8 + s.z_by_distance * face.slack + 16 * u;
+  return texel + slope * step_px + s.z_by_distance * face.slack + 16 * u;
 }
 
 /// The share of the (2 radius + 1)^2 texels around a point that do not lie before it; outside of the map nothing does.
@@ -75,8 +75,8 @@ inline double depth_tolerance(const Seen& s, const kernels::SeenFace& face, doub
 /// Source: Reeves, Salesin & Cook 1987, Rendering antialiased shadows with depth maps, doi:10.1145/37402.37435; their
 /// random places are all texels of the square here.
 template <class Depth>
-double share_of_light(const Seen& s, double tolerance, int radius, const glm::ivec2& size, bool reversed_z,
-                      const Depth& z_of) {
+double share_of_light(const Seen& s, double tolerance, int radius, const glm::ivec2& size,
+                      kernels::DepthRange depth, const Depth& z_of) {
   if (!(std::fabs(s.x_px) < 0x1p30 && std::fabs(s.y_px) < 0x1p30)) return 1;
   const int column = static_cast<int>(std::floor(s.x_px)), row = static_cast<int>(std::floor(s.y_px));
   int lit = 0;
@@ -84,7 +84,7 @@ double share_of_light(const Seen& s, double tolerance, int radius, const glm::iv
     for (int x = column - radius; x <= column + radius; ++x) {
       const bool inside = x >= 0 && y >= 0 && x < size.x && y < size.y;
       const double z = inside ? z_of(x, y) : s.z;
-      const double nearer = reversed_z ? z - s.z : s.z - z;
+      const double nearer = kernels::is_reversed(depth) ? z - s.z : s.z - z;
       lit += nearer > tolerance ? 0 : 1;
     }
   const int side = 2 * radius + 1;

@@ -92,12 +92,12 @@ Outputs run(const Inputs& in, const Params&, Context& ctx) {
     const auto position = in.mesh->real<R>("position");
     const auto p = position->template values<glm::vec<4, R>>();
     const Sources of_mesh(*in.mesh);
-    const bool reversed_z = in.screen->camera->reversed_z;
+    const kernels::ClipSpace space = clip_space(in.screen->camera.get());
     std::vector<std::uint32_t> reason, samples;
     std::array<std::uint64_t, classify::reasons> faces{};
     for (const glm::uvec3& t : in.mesh->triangles()) {
       const Found& f = found[of_mesh.of(static_cast<std::uint32_t>(reason.size()))];
-      const Reason r = classify::reason(p[t.x], p[t.y], p[t.z], reversed_z, f);
+      const Reason r = classify::reason(p[t.x], p[t.y], p[t.z], space, f);
       reason.push_back(static_cast<std::uint32_t>(r));
       samples.push_back(static_cast<std::uint32_t>(std::min<std::uint64_t>(f.seen, no_face)));
       ++faces[static_cast<std::size_t>(r)];

@@ -36,26 +36,28 @@ struct Found {
 // outside has none.
 template <std::floating_point R>
 bool inside_volume(const glm::vec<4, R>& a, const glm::vec<4, R>& b, const glm::vec<4, R>& c,
-                   bool reversed_z) {
+                   kernels::ClipSpace space) {
   const auto code = [&](const glm::vec<4, R>& p) -> unsigned {
-    return kernels::volume_outcode(reversed_z, R(1), p);
+    return kernels::volume_outcode(space, R(1), p);
   };
   if ((code(a) & code(b) & code(c)) != 0) return false;
   const auto cutting = static_cast<std::uint8_t>(code(a) | code(b) | code(c));
-  return kernels::clip_triangle(kernels::view_volume(reversed_z), cutting, a, b, c).size > 0;
+  return kernels::clip_triangle(kernels::view_volume(space), cutting, a, b, c).size > 0;
 }
 
 // The reason of one face. What is seen is visible whatever it faces; of several reasons the first in their order.
 template <std::floating_point R>
-Reason reason(const glm::vec<4, R>& a, const glm::vec<4, R>& b, const glm::vec<4, R>& c, bool reversed_z,
-              const Found& found) {
+Reason reason(const glm::vec<4, R>& a, const glm::vec<4, R>& b, const glm::vec<4, R>& c,
+              kernels::ClipSpace space, const Found& found) {
   const auto finite = [](const glm::vec<4, R>& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(p.w);
   };
   if (!finite(a) || !finite(b) || !finite(c)) return Reason::undefined;
   if (found.seen > 0) return Reason::visible;
-  if (!inside_volume(a, b, c, reversed_z)) return Reason::outside;
-  const auto row = [](const glm::vec<4, R>& p) { return glm::vec<3, R>(p.x, p.y, p.w); };
+  if (!inside_volume(a, b, c, space)) return Reason::outside;
+  const auto row = [&](const glm::vec<4, R>& p) {
+    return glm::vec<3, R>(p.x, space.y_down ? -p.y : p.y, p.w);
+  };
   // The signed volume of the eye and the three corners: exact, and right for corners behind the eye.
   if (kernels::determinant_sign(row(a), row(b), row(c)) <= 0) return Reason::back_facing;
   return found.covers ? Reason::hidden : Reason::between_samples;

@@ -51,7 +51,7 @@ Ref<Table> steps_of(const painter::Order& order, std::span<const kernels::Screen
       continue;
     }
     const kernels::ScreenFace& f = faces[order.face[i]];
-    kernels::DepthRange d;
+    kernels::DepthSpan d;
     for (const kernels::GridPoint& c : f.corner) d.add(f.depth.at(kernels::to_px(c)));
     steps.add(order.face[i], sign * d.least, sign * d.greatest, order.cycle[i]);
   }

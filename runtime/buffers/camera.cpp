@@ -19,11 +19,13 @@ struct Ops {
     for (const glm::dvec3& v : {c.eye, c.target, c.up}) h.value(v.x).value(v.y).value(v.z);
     h.value(c.fov_y).value(c.near_z).value(c.far_z).value(c.height).value(c.reversed_z);
     h.value(c.resolution.x).value(c.resolution.y);
+    h.value(c.conventions).value(c.subpixel_bits);
   }
   static void save(const Camera& c, ArchiveWriter& w) {
     for (const glm::dvec3& v : {c.eye, c.target, c.up}) w.raw(&v, sizeof v);
     w.value(c.fov_y).value(c.near_z).value(c.far_z).value(c.height).value(c.reversed_z);
     w.value(c.resolution.x).value(c.resolution.y);
+    w.value(c.conventions).value(c.subpixel_bits);
   }
   static Camera load(ArchiveReader& r) {
     Camera c;
@@ -31,6 +33,9 @@ struct Ops {
     for (double* v : {&c.fov_y, &c.near_z, &c.far_z, &c.height}) *v = r.value<double>();
     c.reversed_z = r.flag();
     for (int* v : {&c.resolution.x, &c.resolution.y}) *v = r.value<int>();
+    c.conventions = r.choice(Conventions::d3d);
+    c.subpixel_bits = r.value<int>();
+    if (c.subpixel_bits < 4 || c.subpixel_bits > 8) throw ArchiveError("a grid that does not exist");
     return c;
   }
   // far_z may be infinite; as a NaN it still counts.
@@ -60,11 +65,24 @@ struct Ops {
             {"far", json_number(c.far_z)},
             {"height", json_number(c.height)},
             {"reversed_z", c.reversed_z},
+            {"conventions", choices(c.conventions)[static_cast<std::size_t>(c.conventions)].second},
+            {"subpixel_bits", c.subpixel_bits},
             {"resolution_px", {c.resolution.x, c.resolution.y}}};
   }
 };
 
 }  // namespace
+
+kernels::ClipSpace clip_space(Conventions conventions, bool reversed_z) {
+  using kernels::DepthRange;
+  const DepthRange usual =
+      conventions == Conventions::gl ? DepthRange::minus_one_to_one : DepthRange::zero_to_one;
+  return {reversed_z ? DepthRange::one_to_zero : usual, conventions == Conventions::vulkan};
+}
+
+kernels::ClipSpace clip_space(const Camera* camera) {
+  return camera == nullptr ? kernels::ClipSpace{} : clip_space(camera->conventions, camera->reversed_z);
+}
 
 template <>
 const BufferType& buffer_type<Camera>() {

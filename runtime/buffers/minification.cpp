@@ -3,6 +3,7 @@
 #include "nodes/kernels/parallel.h"
 #include "nodes/kernels/screen_triangle.h"
 #include "nodes/kernels/uv_slopes.h"
+#include "runtime/buffers/screen_view.h"
 
 namespace frustum {
 namespace {
@@ -36,6 +37,7 @@ std::optional<std::size_t> first_minified_face(const Mesh& mesh, const MipPyrami
   const Column* materials = skin.material ? mesh.find("material") : nullptr;
   const auto material =
       materials != nullptr ? materials->values<std::uint32_t>() : std::span<const std::uint32_t>();
+  const int corner_bits = corner_bits_of(mesh);
   const glm::dvec2 size(texture.levels[0].width, texture.levels[0].height);
   glm::dmat2 map(skin.texture_from_uv);
   for (glm::length_t c = 0; c < 2; ++c) map[c] *= size;
@@ -45,7 +47,7 @@ std::optional<std::size_t> first_minified_face(const Mesh& mesh, const MipPyrami
     kernels::UvFace f;
     for (std::size_t k = 0; k < 3; ++k) {
       const glm::dvec4& p = position[triangle[i][static_cast<glm::length_t>(k)]];
-      const auto corner = kernels::snap(p, kernels::corner_bits);
+      const auto corner = kernels::snap(p, corner_bits);
       if (!corner) return false;  // not rasterized
       f.px[k] = glm::dvec2(corner->x, corner->y) / double{kernels::corner_unit};
       f.per_w[k] = p.w;

@@ -22,7 +22,12 @@ kernels::SamplePositions sample_positions(const SamplePattern* pattern) {
 }
 
 kernels::DepthOrder depth_order(const Mesh& mesh) {
-  return mesh.camera->reversed_z ? kernels::DepthOrder::reversed : kernels::DepthOrder::standard;
+  return kernels::is_reversed(clip_space(mesh.camera.get()).depth) ? kernels::DepthOrder::reversed
+                                                                   : kernels::DepthOrder::standard;
+}
+
+int corner_bits_of(const Mesh& mesh) {
+  return mesh.camera ? mesh.camera->subpixel_bits : kernels::corner_bits;
 }
 
 }  // namespace frustum

@@ -19,6 +19,9 @@ kernels::SamplePositions sample_positions(const SamplePattern* pattern);
 
 kernels::DepthOrder depth_order(const Mesh& mesh);
 
+// Of the grid that corners on the screen snap to: 2^-bits px.
+int corner_bits_of(const Mesh& mesh);
+
 // The mesh's spans in one precision, and what owns them.
 template <class R>
 struct ScreenView {
@@ -29,7 +32,8 @@ struct ScreenView {
   kernels::ScreenMesh<R> triangles() const {
     const Column* origin = mesh->find("origin");
     return {position->template values<glm::vec<4, R>>(), mesh->triangles(),
-            origin != nullptr ? origin->values<std::uint32_t>() : std::span<const std::uint32_t>()};
+            origin != nullptr ? origin->values<std::uint32_t>() : std::span<const std::uint32_t>(),
+            corner_bits_of(*mesh)};
   }
 };
 

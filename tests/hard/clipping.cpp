@@ -21,7 +21,7 @@ namespace {
 using glm::vec4;
 using Ring = std::vector<vec4>;
 constexpr float largest = std::numeric_limits<float>::max();
-const auto volume = kernels::view_volume(false);
+const auto volume = kernels::view_volume();
 constexpr std::size_t right_side = 3;  // planes[3] of the volume: x <= w
 
 bool same_bits(const vec4& a, const vec4& b) {

@@ -49,7 +49,7 @@ void conservative_culling(Trial& t) {
     }
     faces.push_back({first, first + 1, first + 2});
   }
-  const auto kept = cull::faces_not_outside<float>(false, positions, faces);
+  const auto kept = cull::faces_not_outside<float>({}, positions, faces);
   std::size_t next = 0;
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const bool keeps = next < kept.size() && kept[next] == f, gone = all_outside(f, before_it);
@@ -66,7 +66,7 @@ void conservative_culling(Trial& t) {
           if (!all_outside(f, after_the_divide)) out.push_back(f);
         keep(out.size());
       },
-      [&] { keep(cull::faces_not_outside<float>(false, positions, faces).size()); });
+      [&] { keep(cull::faces_not_outside<float>({}, positions, faces).size()); });
 }
 
 void edge_on_faces(Trial& t) {

@@ -56,7 +56,7 @@ void sliver_pieces(Trial& t) {
           area += (a.x * b.y - a.y * b.x) / 2;
         }
       }
-      kernels::DepthRange x, y;
+      kernels::DepthSpan x, y;
       for (const auto& c : faces[f].corner) x.add(kernels::to_px(c).x), y.add(kernels::to_px(c).y);
       if (x.least < 0 || y.least < 0 || x.greatest > edge || y.greatest > edge) continue;
       const double whole = 0.5 * 0x1p-16 *

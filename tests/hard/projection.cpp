@@ -28,7 +28,7 @@ bool finite(const vec4& p) {
 
 // Corners of what is left of a triangle on a screen of 64 x 64, after the real clip and viewport.
 std::vector<vec4> on_screen(const ClipTriangle& t) {
-  const auto planes = kernels::view_volume(false);
+  const auto planes = kernels::view_volume();
   const auto ring = kernels::clip_triangle<float>(planes, 0x3f, t[0], t[1], t[2]);
   std::vector<vec4> clip, screen(ring.size);
   for (std::size_t k = 0; k < ring.size; ++k) clip.push_back(ring.vertex[k].p);
@@ -114,8 +114,9 @@ void behind_the_eye(Trial& t) {
 }
 
 void depth_resolution(Trial& t) {
-  const kernels::ClipMap<float> standard(kernels::perspective(1, 1, 1e-3, 1e6, false));
-  const kernels::ClipMap<float> reversed(kernels::perspective(1, 1, 1e-3, infinity, true));
+  const kernels::ClipMap<float> standard(kernels::perspective(1, 1, 1e-3, 1e6));
+  const kernels::ClipMap<float> reversed(
+      kernels::perspective(1, 1, 1e-3, infinity, {.depth = kernels::DepthRange::one_to_zero}));
   const auto depth = [](const kernels::ClipMap<float>& map, float distance) {
     return kernels::divided(map({0, 0, -distance})).z;
   };
@@ -139,7 +140,7 @@ void thin_frustum(Trial& t) {
     const auto near_f = static_cast<float>(n), far_f = static_cast<float>(f);
     const float scale_f = -(far_f + near_f) / (far_f - near_f),
                 offset_f = -2 * far_f * near_f / (far_f - near_f);
-    const auto p = kernels::perspective(1, 1, n, f, false);
+    const auto p = kernels::perspective(1, 1, n, f);
     const Rational unit = Rational(u64) * Rational(f) / (Rational(f) - Rational(n));
     const auto error = [&](double scale, double offset) {
       const Rational at_near = depth(Rational(scale), Rational(offset), Rational(n)) + 1;
@@ -161,8 +162,9 @@ void thin_frustum(Trial& t) {
 void far_thin_box(Trial& t) {
   const auto judge = [&](double near_z, double far_z) {
     const auto n = static_cast<float>(near_z), f = static_cast<float>(far_z);
-    const kernels::ClipMap<float> map(kernels::orthographic(1, 1, near_z, far_z, false));
-    const kernels::ClipMap<float> reversed(kernels::orthographic(1, 1, near_z, far_z, true));
+    const kernels::ClipMap<float> map(kernels::orthographic(1, 1, near_z, far_z));
+    const kernels::ClipMap<float> reversed(
+        kernels::orthographic(1, 1, near_z, far_z, {.depth = kernels::DepthRange::one_to_zero}));
     const auto textbook = [&](float z) { return -2 / (f - n) * z - (f + n) / (f - n); };
     t.measure(ulps(textbook(-n), Real(-1.0)), ulps(map({0, 0, -n}).z, Real(-1.0)), {near_z, far_z});
     t.measure(ulps(textbook(-f), Real(1.0)), ulps(map({0, 0, -f}).z, Real(1.0)), {near_z, far_z});
@@ -175,7 +177,7 @@ void far_thin_box(Trial& t) {
     const auto depth = static_cast<float>(1 + t.random.below(64)) * std::ldexp(1.0F, std::ilogb(near_z) - 23);
     judge(near_z, static_cast<double>(near_z) + depth);
   }
-  const kernels::ClipMap<float> map(kernels::orthographic(1, 1, 1, 20, false));
+  const kernels::ClipMap<float> map(kernels::orthographic(1, 1, 1, 20));
   std::vector<vec3> inputs(1000, vec3(1, 2, -3));
   t.price_over(
       inputs, [](const vec3& p) { return vec4(p.x * 2, p.y * 2, p.z * -0.1F - 1.1F, 1); },
@@ -233,15 +235,17 @@ void course_matrix(Trial& t) {
     course[2][3] = -1 / n, course[3][3] = 0;
     t.tally(!all_finite(glm::inverse(glm::mat4(course))), kernels::inverse<4>(course).has_value(), {n});
     for (const bool reversed : {false, true}) {
-      const auto ours = kernels::matrix_of(kernels::perspective(1, 1, n, 100, reversed));
+      const auto ours = kernels::matrix_of(kernels::perspective(
+          1, 1, n, 100,
+          reversed ? kernels::ClipSpace{.depth = kernels::DepthRange::one_to_zero} : kernels::ClipSpace{}));
       t.require(kernels::inverse<4>(ours).has_value(), "ours has an inverse", {n});
     }
   }
 }
 
 void unprojecting(Trial& t) {
-  const auto standard = kernels::perspective(1, 1, 1e-3, 1e6, false),
-             reversed = kernels::perspective(1, 1, 1e-3, 1e6, true);
+  const auto standard = kernels::perspective(1, 1, 1e-3, 1e6),
+             reversed = kernels::perspective(1, 1, 1e-3, 1e6, {.depth = kernels::DepthRange::one_to_zero});
   const kernels::ClipMap<float> to_standard(standard), to_reversed(reversed);
   const glm::mat4 back(glm::inverse(kernels::matrix_of(standard)));
   const auto textbook = [&](float z) {

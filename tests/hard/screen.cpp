@@ -81,7 +81,7 @@ std::vector<float> interpolated(const kernels::ScreenMesh<float>& mesh, const Pi
 }
 
 Picture drawn(std::span<const ClipTriangle> triangles, int width, int height, double guard_band) {
-  const auto planes = kernels::view_volume(false, guard_band);
+  const auto planes = kernels::view_volume({}, guard_band);
   const kernels::Viewport viewport({width, height});
   ScreenTriangles out;
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {

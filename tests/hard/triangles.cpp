@@ -408,7 +408,7 @@ void overshoot(Trial& t) {
 }
 
 void same_place_two_ways(Trial& t) {
-  const auto volume = kernels::perspective(1, 1.5, 0.1, 100, false);
+  const auto volume = kernels::perspective(1, 1.5, 0.1, 100);
   const auto view = kernels::look_at({3, 2, 5}, {0, 0.5, 0}, {0, 1, 0}).eye_from_world;
   const glm::mat4 v(kernels::matrix_of(view)), p(kernels::matrix_of(volume)), together = p * v;
   std::vector<vec3> world(20000);

@@ -120,7 +120,7 @@ std::vector<Buffer> one_of_each() {
           made(textured),
           made(walls),
           made(Material{.name = "wax", .model = Reflection::phong}),
-          made(Camera{.reversed_z = true}),
+          made(Camera{.reversed_z = true, .conventions = Conventions::vulkan, .subpixel_bits = 5}),
           made(Number{-0.0}),
           made(Matrix{glm::dmat4(3)})};
 }

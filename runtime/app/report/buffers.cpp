@@ -1,5 +1,6 @@
 #include "runtime/app/report/buffers.h"
 
+#include "runtime/buffers/camera.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/surface.h"
 #include "runtime/graph/pixel_run.h"
@@ -70,7 +71,7 @@ Json picture(const Raster& full, Blobs& blobs, std::uint64_t most_values) {
 // Points that faces or lines name, each once, in order of first use, as x y z with y up.
 class Points {
  public:
-  Points(const Column& position) : position_(position) {}
+  Points(const Column& position, bool y_down) : position_(position), y_down_(y_down) {}
   std::uint32_t index(std::uint32_t vertex) {
     const auto [at, fresh] = known_.try_emplace(vertex, static_cast<std::uint32_t>(known_.size()));
     if (fresh) add(vertex);
@@ -79,26 +80,33 @@ class Points {
   std::span<const float> values() const { return values_; }
 
  private:
-  // A point in clip space lies where the divide puts it; image rows count downwards.
+  // A point in clip space lies where the divide puts it.
   void add(std::uint32_t v) {
     const double w = position_.space() == Space::clip ? position_.number(v, 3) : 1;
-    const double down = position_.space() == Space::screen ? -1 : 1;
+    const double down = y_down_ ? -1 : 1;
     values_.push_back(static_cast<float>(position_.number(v, 0) / w));
     values_.push_back(static_cast<float>(position_.number(v, 1) / w * down));
     values_.push_back(static_cast<float>(position_.number(v, 2) / w));
   }
   const Column& position_;
+  bool y_down_;
   std::unordered_map<std::uint32_t, std::uint32_t> known_;
   std::vector<float> values_;
 };
 
 bool seen_by_camera(Space s) { return s == Space::clip || s == Space::ndc || s == Space::screen; }
 
+// Rows of the picture count downwards, and so does y before it, by the conventions of Vulkan.
+bool y_is_down(const Mesh& m) {
+  if (m.space() == Space::screen) return true;
+  return seen_by_camera(m.space()) && clip_space(m.camera.get()).y_down;
+}
+
 Json faces(const Mesh& m, Blobs& blobs) {
   if (m.find("position") == nullptr || m.faces() == 0) return {};
   const auto triangles = m.triangles();
   const std::size_t step = (triangles.size() + most_faces - 1) / most_faces;
-  Points points(m.at("position"));
+  Points points(m.at("position"), y_is_down(m));
   std::vector<std::uint32_t> indices;
   for (std::size_t f = 0; f < triangles.size(); f += step)
     for (const std::uint32_t v : {triangles[f].x, triangles[f].y, triangles[f].z})

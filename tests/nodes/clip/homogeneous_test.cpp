@@ -98,7 +98,7 @@ TEST(ClipHomogeneous, LeavesOnlyPointsInsideAndIsIdempotent) {
   const auto p = test::column<glm::vec4>(*once, "position");
   for (const auto& t : test::column<glm::uvec3>(*once, "triangle"))
     for (glm::length_t k = 0; k < 3; ++k) {
-      EXPECT_EQ(kernels::volume_outcode(false, 1.0F, p[t[k]]), 0);
+      EXPECT_EQ(kernels::volume_outcode({}, 1.0F, p[t[k]]), 0);
       EXPECT_GT(p[t[k]].w, 0);
     }
   const auto twice = clip(once);

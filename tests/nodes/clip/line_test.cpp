@@ -110,7 +110,8 @@ void expect_exact(const glm::dvec4& p, const glm::dvec4& q, std::span<const glm:
 
 TEST(ClipLine, LeavesWhatCohenAndSutherlandLeaveInRationals) {
   Ends ends;
-  const auto volume = clip::volume_planes(false), reversed = clip::volume_planes(true),
+  const auto volume = clip::volume_planes({}),
+             reversed = clip::volume_planes({.depth = kernels::DepthRange::one_to_zero}),
              window = clip::rectangle_planes({-1, -0.5}, {1.5, 1});
   for (int i = 0; i < 4000; ++i) {
     expect_exact(ends.coarse(0), ends.coarse(0), volume);
@@ -172,7 +173,7 @@ TEST(ClipLine, NamesThePlaneThatCutsLastOfTwoThatMeetInACorner) {
 
 TEST(ClipLine, WhatWasClippedIsNotClippedAgain) {
   Ends ends;
-  const auto volume = clip::volume_planes(false), window = clip::rectangle_planes({-1, -0.3}, {1.7, 1});
+  const auto volume = clip::volume_planes({}), window = clip::rectangle_planes({-1, -0.3}, {1.7, 1});
   int cuts = 0;
   for (int i = 0; i < 20000; ++i) {
     const bool flat = i % 2 == 0;
@@ -209,7 +210,7 @@ TEST(ClipLine, SaysWhatEachPlaneDid) {
 
 // Hard cases of the row: parallel to a plane, without length, -0, through the eye, not finite.
 TEST(ClipLine, HasAnAnswerForSegmentsWithoutCrossings) {
-  const auto volume = clip::volume_planes(false), window = clip::rectangle_planes({0, 0}, {1, 1});
+  const auto volume = clip::volume_planes({}), window = clip::rectangle_planes({0, 0}, {1, 1});
   EXPECT_TRUE(cut({0.5, 0.5, 0, 1}, {0.5, 0.5, 0, 1}, window)) << "a point inside";
   EXPECT_TRUE(cut({1, -0.0, 0, 1}, {1, -0.0, 0, 1}, window)) << "a point in a corner";
   EXPECT_FALSE(cut({2, 0.5, 0, 1}, {2, 0.5, 0, 1}, window));

@@ -75,7 +75,7 @@ TEST(CullBackface, SeesPerspectiveFromTheEyeAndNotAlongTheAxis) {
 TEST(CullBackface, AgreesBetweenSpaces) {
   const Mesh torus = test::torus(64, 48);
   const auto view = kernels::look_at({2, 1.5, 2.5}, {0, 0, 0}, {0, 1, 0}).eye_from_world;
-  const auto volume = kernels::perspective(0.8, 1, 0.1, 100, false);
+  const auto volume = kernels::perspective(0.8, 1, 0.1, 100);
   std::vector<glm::vec3> eye;
   std::vector<glm::vec4> clip;
   for (const auto& p : test::column<glm::vec3>(torus, "position")) {

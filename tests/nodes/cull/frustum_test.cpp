@@ -56,7 +56,7 @@ TEST(CullFrustum, NeverDropsAFaceThatShows) {
   const auto kept = test::column<std::uint32_t>(*out, "origin");
   std::vector<bool> is_kept(t.size());
   for (const auto f : kept) is_kept[f] = true;
-  const auto planes = kernels::view_volume(false);
+  const auto planes = kernels::view_volume();
   std::size_t shown = 0;
   for (std::size_t f = 0; f < t.size(); ++f)
     if (kernels::clip_triangle(planes, 63, p[t[f].x], p[t[f].y], p[t[f].z]).size > 0) {

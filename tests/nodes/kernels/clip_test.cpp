@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/clip_spaces.h"
 #include "tests/support/ulps.h"
 
 namespace frustum {
@@ -16,7 +17,7 @@ using kernels::ClipRing;
 using kernels::ClipVertex;
 using test::Random;
 
-const auto volume = kernels::view_volume(false);
+const auto volume = kernels::view_volume();
 
 template <class R>
 glm::vec<4, R> random_point(Random& random, double reach) {
@@ -90,7 +91,7 @@ TEST(ClipTriangle, GivesBothNeighboursOfAnEdgeTheSameBits) {
 template <class R>
 void expect_inside_and_idempotent(double guard) {
   Random random(2);
-  const auto planes = kernels::view_volume(false, guard);
+  const auto planes = kernels::view_volume({}, guard);
   int naive_outside = 0, cut = 0;
   for (int i = 0; i < 100000; ++i) {
     const glm::vec<4, R> corner[] = {random_point<R>(random, 3), random_point<R>(random, 3),
@@ -209,8 +210,12 @@ TEST(Outcode, PutsNaNOutsideEverything) {
   EXPECT_EQ(kernels::outcode(volume, glm::vec4(0, 0, 0, 1)), 0);
   EXPECT_EQ(kernels::outcode(volume, glm::vec4(-1, 1, -1, 1)), 0);
   EXPECT_EQ(kernels::outcode(volume, glm::vec4(0, 0, -2, 1)), 1);
-  EXPECT_EQ(kernels::outcode(kernels::view_volume(true), glm::vec4(0, 0, 2, 1)), 1);
-  EXPECT_EQ(kernels::outcode(kernels::view_volume(true), glm::vec4(0, 0, -0.5F, 1)), 2);
+  EXPECT_EQ(kernels::outcode(kernels::view_volume({.depth = kernels::DepthRange::one_to_zero}),
+                             glm::vec4(0, 0, 2, 1)),
+            1);
+  EXPECT_EQ(kernels::outcode(kernels::view_volume({.depth = kernels::DepthRange::one_to_zero}),
+                             glm::vec4(0, 0, -0.5F, 1)),
+            2);
 }
 
 TEST(Outcode, OfTheVolumeIsThatOfItsPlanes) {
@@ -219,10 +224,10 @@ TEST(Outcode, OfTheVolumeIsThatOfItsPlanes) {
     auto p = random_point<float>(random, 1.2);
     if (i % 5 == 0) p[static_cast<int>(random.below(3))] = p.w;
     if (i % 7 == 0) p[static_cast<int>(random.below(3))] = i % 2 == 0 ? std::nanf("") : -0.0F;
-    for (const bool reversed : {false, true})
+    for (const kernels::ClipSpace space : test::clip_spaces)
       for (const double guard : {1.0, 1.3})
-        EXPECT_EQ(kernels::volume_outcode(reversed, static_cast<float>(guard), p),
-                  kernels::outcode(kernels::view_volume(reversed, guard), p));
+        EXPECT_EQ(kernels::volume_outcode(space, static_cast<float>(guard), p),
+                  kernels::outcode(kernels::view_volume(space, guard), p));
   }
 }
 

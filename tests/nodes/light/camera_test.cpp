@@ -27,8 +27,8 @@ Camera camera_at(const Light& light, const std::string& params = R"({"size": 100
 // In NDC; all of the mesh for a parallel view.
 kernels::Box box_in_ndc(const Camera& c, bool place) {
   const auto view = kernels::look_at(c.eye, c.target, c.up).eye_from_world;
-  const auto volume = place ? kernels::perspective(c.fov_y, 1, c.near_z, c.far_z, false)
-                            : kernels::orthographic(c.height, 1, c.near_z, c.far_z, false);
+  const auto volume = place ? kernels::perspective(c.fov_y, 1, c.near_z, c.far_z)
+                            : kernels::orthographic(c.height, 1, c.near_z, c.far_z);
   kernels::Box box;
   for (const glm::vec3& p : test::column<glm::vec3>(test::torus(24, 12), "position")) {
     const auto clip = kernels::ClipMap<double>(volume)(view.linear * dvec3(p) + view.translation);

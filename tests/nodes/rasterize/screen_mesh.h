@@ -21,7 +21,7 @@ struct ScreenMeshMaker {
     position.emplace_back(static_cast<R>(x), static_cast<R>(y), static_cast<R>(z), static_cast<R>(per_w));
     return static_cast<std::uint32_t>(position.size() - 1);
   }
-  std::shared_ptr<Mesh> make(glm::ivec2 resolution, bool reversed_z = false) const {
+  std::shared_ptr<Mesh> make(glm::ivec2 resolution, bool reversed_z = false, int subpixel_bits = 8) const {
     auto mesh = std::make_shared<Mesh>();
     mesh->columns.push_back(Column::make("triangle", Domain::face, std::span<const glm::uvec3>(face)));
     mesh->columns.push_back(
@@ -29,6 +29,7 @@ struct ScreenMeshMaker {
     auto camera = std::make_shared<Camera>();
     camera->resolution = resolution;
     camera->reversed_z = reversed_z;
+    camera->subpixel_bits = subpixel_bits;
     mesh->camera = camera;
     return mesh;
   }

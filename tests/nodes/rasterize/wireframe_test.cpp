@@ -71,7 +71,7 @@ TEST(MeshEdges, AreThoseOfACubeEachOnce) {
 }
 
 TEST(WireframeLine, IsWhatTheViewportSays) {
-  const auto planes = wireframe::planes_around({100, 50}, false, 0);
+  const auto planes = wireframe::planes_around({100, 50}, {}, 0);
   const auto line = wireframe::line_of({-1, 0, 0, 2}, {1, 0.5, 0, 2}, planes, kernels::Viewport({100, 50}));
   ASSERT_TRUE(line);
   EXPECT_EQ(line->a, glm::dvec3(25, 25, 0));
@@ -81,7 +81,7 @@ TEST(WireframeLine, IsWhatTheViewportSays) {
 // An edge through the plane of the eye: it ends on the near plane, on the visible side, and nothing wraps round.
 TEST(WireframeLine, EndsAtTheNearPlaneWhenItPassesTheEye) {
   const kernels::Viewport viewport({100, 100});
-  const auto planes = wireframe::planes_around({100, 100}, false, 1);
+  const auto planes = wireframe::planes_around({100, 100}, {}, 1);
   const auto line = wireframe::line_of({0.2, 0, 0, 1}, {0.2, 0, -3, -2}, planes, viewport);
   ASSERT_TRUE(line);
   EXPECT_EQ(line->a.x, 60);
@@ -110,7 +110,7 @@ TEST(RasterizeWireframe, InksExactlyTheSamplesNearAnEdge) {
   const auto image = drawing(s, {{"width", 1.5}}, false);
   std::vector<std::uint32_t> place(8);
   std::iota(place.begin(), place.end(), 0U);
-  const auto planes = wireframe::planes_around(c->resolution, false, 3);
+  const auto planes = wireframe::planes_around(c->resolution, {}, 3);
   const auto clip = test::column<glm::vec4>(*s.clip, "position");
   for (int y = 0; y < 45; ++y)
     for (int x = 0; x < 67; ++x) {

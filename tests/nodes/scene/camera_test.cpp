@@ -37,6 +37,48 @@ TEST(SceneCamera, HasTheDefaultsOfItsBuffer) {
   EXPECT_EQ(c.near_z, d.near_z);
   EXPECT_EQ(c.far_z, d.far_z);
   EXPECT_EQ(c.resolution, d.resolution);
+  EXPECT_EQ(c.conventions, d.conventions);
+  EXPECT_EQ(c.subpixel_bits, d.subpixel_bits);
+}
+
+TEST(SceneCamera, HasTheConventionsOfAnApi) {
+  using kernels::DepthRange;
+  const auto space = [](const Json& params) {
+    const Camera c = camera(params);
+    return clip_space(&c);
+  };
+  EXPECT_EQ(space(Json::object()).depth, DepthRange::minus_one_to_one);
+  EXPECT_EQ(space({{"conventions", "vulkan"}}).depth, DepthRange::zero_to_one);
+  EXPECT_EQ(space({{"conventions", "d3d"}}).depth, DepthRange::zero_to_one);
+  for (const char* api : {"gl", "vulkan", "d3d"}) {
+    EXPECT_EQ(space({{"conventions", api}, {"reversed_z", true}}).depth, DepthRange::one_to_zero);
+    EXPECT_EQ(space({{"conventions", api}}).y_down, std::string_view(api) == "vulkan");
+  }
+  EXPECT_EQ(clip_space(nullptr).depth, DepthRange::minus_one_to_one);
+  EXPECT_FALSE(clip_space(nullptr).y_down);
+  EXPECT_EQ(provoking_corner(Conventions::gl), 2);
+  EXPECT_EQ(provoking_corner(Conventions::vulkan), 0);
+  EXPECT_EQ(provoking_corner(Conventions::d3d), 0);
+}
+
+// What a camera's conventions change is seen by the cache and in summaries.
+TEST(SceneCamera, IsAnotherBufferWithOtherConventions) {
+  const auto buffer = [](const Json& params) { return test::run_node(nodes::scene_camera(), params).at(0); };
+  const Buffer usual = buffer(Json::object()), vulkan = buffer({{"conventions", "vulkan"}}),
+               coarse = buffer({{"subpixel_bits", 4}});
+  EXPECT_NE(usual.digest(), vulkan.digest());
+  EXPECT_NE(usual.digest(), coarse.digest());
+  EXPECT_EQ(vulkan.type().summary(vulkan.data())["conventions"], "vulkan");
+  EXPECT_EQ(coarse.type().summary(coarse.data())["subpixel_bits"], 4);
+}
+
+// Direct3D 11.3 asks for 16.8 fixed point; the others for 4 bits or more.
+TEST(SceneCamera, LetsDirect3DSnapToEightBitsOnly) {
+  EXPECT_EQ(error({{"conventions", "d3d"}, {"subpixel_bits", 8}}), "");
+  EXPECT_EQ(error({{"conventions", "d3d"}, {"subpixel_bits", 4}}), "impossible_camera");
+  EXPECT_EQ(error({{"conventions", "vulkan"}, {"subpixel_bits", 4}}), "");
+  EXPECT_THROW(camera({{"subpixel_bits", 3}}), std::runtime_error);
+  EXPECT_THROW(camera({{"subpixel_bits", 9}}), std::runtime_error);
 }
 
 TEST(SceneCamera, PutsTheFarPlaneAtInfinityForNull) {

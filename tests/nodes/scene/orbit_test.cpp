@@ -45,8 +45,7 @@ TEST(SceneOrbit, AlwaysHasTheWholeMeshInThePicture) {
                                {"resolution", {width, height}},
                                {"elevation", 7 * frame - 40}});
       const auto view = kernels::look_at(c->eye, c->target, c->up).eye_from_world;
-      const kernels::ClipMap<double> clip(
-          kernels::perspective(c->fov_y, c->aspect(), c->near_z, c->far_z, false));
+      const kernels::ClipMap<double> clip(kernels::perspective(c->fov_y, c->aspect(), c->near_z, c->far_z));
       for (const glm::vec3& q : p) {
         const glm::dvec4 h = clip(kernels::PointMap<double>(view)(glm::dvec3(q)));
         for (glm::length_t k = 0; k < 3; ++k)

@@ -3,6 +3,7 @@
 #include "nodes/light/camera.h"
 #include "runtime/buffers/camera.h"
 #include "tests/nodes/shade/shadow_scenes.h"
+#include "tests/support/clip_spaces.h"
 
 #include <gtest/gtest.h>
 
@@ -25,16 +26,18 @@ struct SunMap {
 
 // `hit` gives the nearest point along the light from a place before everything, if there is one.
 SunMap sun_map(const dvec3& to_light, const std::vector<glm::vec3>& casters, int size,
-               const std::function<std::optional<dvec3>(const dvec3&)>& hit) {
+               const std::function<std::optional<dvec3>(const dvec3&)>& hit,
+               Conventions conventions = Conventions::gl) {
   const std::vector<dvec3> wide(casters.begin(), casters.end());
   const dvec3 travel = -kernels::normalized(to_light).value();
   const light_camera::View v = light_camera::parallel_view(travel, wide, size);
   Camera camera{
       .eye = v.eye, .target = v.target, .up = v.up, .near_z = v.near_z, .far_z = v.far_z, .height = v.height};
   camera.resolution = glm::ivec2(size);
+  camera.conventions = conventions;
   const shadow_map::View view{kernels::look_at(v.eye, v.target, v.up).eye_from_world,
-                              kernels::orthographic(v.height, 1, v.near_z, v.far_z, false),
-                              kernels::Viewport(camera.resolution)};
+                              kernels::orthographic(v.height, 1, v.near_z, v.far_z, clip_space(&camera)),
+                              viewport_of(camera)};
   Raster r(Frame{.window = {0, 0, size, size}, .planes = {{"Z"}}});
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
@@ -48,17 +51,21 @@ SunMap sun_map(const dvec3& to_light, const std::vector<glm::vec3>& casters, int
   return {camera, view, std::make_shared<const Depth>(Depth{r}), v.height / size};
 }
 
-SunMap map_of(const Floor& floor, const Plate& plate, const dvec3& to_light, int size) {
+SunMap map_of(const Floor& floor, const Plate& plate, const dvec3& to_light, int size,
+              Conventions conventions = Conventions::gl) {
   std::vector<glm::vec3> casters = floor.corners();
   for (const glm::vec3& p : plate.triangles()) casters.push_back(p);
-  return sun_map(to_light, casters, size, [&](const dvec3& from) -> std::optional<dvec3> {
-    const dvec3 on_plate = from - to_light * ((from.y - plate.y) / to_light.y);
-    if (on_plate.x > plate.x0 && on_plate.x < plate.x1 && on_plate.z > plate.z0 && on_plate.z < plate.z1)
-      return on_plate;
-    const dvec3 ground = from - to_light * (from.y / to_light.y);
-    if (std::fabs(ground.x) <= floor.size && std::fabs(ground.z) <= floor.size) return ground;
-    return std::nullopt;
-  });
+  return sun_map(
+      to_light, casters, size,
+      [&](const dvec3& from) -> std::optional<dvec3> {
+        const dvec3 on_plate = from - to_light * ((from.y - plate.y) / to_light.y);
+        if (on_plate.x > plate.x0 && on_plate.x < plate.x1 && on_plate.z > plate.z0 && on_plate.z < plate.z1)
+          return on_plate;
+        const dvec3 ground = from - to_light * (from.y / to_light.y);
+        if (std::fabs(ground.x) <= floor.size && std::fabs(ground.z) <= floor.size) return ground;
+        return std::nullopt;
+      },
+      conventions);
 }
 
 Raster shadow(const Floor& floor, const SunMap& map, const dvec3& to_light, const std::string& params) {
@@ -82,8 +89,11 @@ double band(const SunMap& map, const dvec3& to_light) {
 TEST(ShadeShadowMap, AgreesWithTheClosedFormOutsideABandOfATexel) {
   const Floor floor{.size = 4, .edge = 160};
   for (const dvec3& l : lights)
-    for (const int size : {64, 256}) {
-      const SunMap map = map_of(floor, plate, l, size);
+    for (const auto& [size, conventions] : {std::pair{64, Conventions::gl},
+                                            {256, Conventions::gl},
+                                            {64, Conventions::vulkan},
+                                            {64, Conventions::d3d}}) {
+      const SunMap map = map_of(floor, plate, l, size, conventions);
       const Raster seen = shadow(floor, map, l, R"({"radius": 0})");
       int near = 0, wrong = 0;
       for (int y = 0; y < floor.edge; ++y)
@@ -143,8 +153,8 @@ TEST(ShadeShadowMap, AShadowIsNotDetachedFromWhatCastsIt) {
       const auto z = [&](int i, int j) {
         return static_cast<double>(map.depth->raster.at<float>(0, 0, i, j));
       };
-      lost +=
-          shadow_map::share_of_light(s, constant * s.z_by_distance, 0, map.camera.resolution, false, z) > 0;
+      lost += shadow_map::share_of_light(s, constant * s.z_by_distance, 0, map.camera.resolution,
+                                         kernels::DepthRange::minus_one_to_one, z) > 0;
     }
   EXPECT_GT(inside, 1000);
   EXPECT_EQ(lost, inside) << "the constant form fails here";
@@ -180,21 +190,23 @@ TEST(ShadeShadowMap, KeepsTheLawOfTiles) {
 TEST(ShadeShadowMap, DepthRatesAreThoseOfThePlane) {
   const light_camera::View v = light_camera::view_from(
       {1, 5, 2}, kernels::normalized(dvec3(-0.2, -1, 0.1)).value(), {0, 0, 1}, 0.7, {}, 100);
-  const shadow_map::View view{kernels::look_at(v.eye, v.target, v.up).eye_from_world,
-                              kernels::perspective(v.fov_y, 1, 0.5, 20, false),
-                              kernels::Viewport({100, 100})};
   const kernels::SeenFace face{dvec3(0, 0.3, 0), kernels::normalized(dvec3(0.3, 1, -0.4)).value(), 0};
-  const auto on_plane = [&](double x, double z) {
-    return dvec3(x, 0.3 - (face.normal.x * x + face.normal.z * z) / face.normal.y, z);
-  };
-  const auto a = shadow_map::seen_from_light(view, face, on_plane(0.4, 0.1)).value();
-  const auto b = shadow_map::seen_from_light(view, face, on_plane(0.9, 0.2)).value();
-  const auto c = shadow_map::seen_from_light(view, face, on_plane(0.5, 0.8)).value();
-  // z = z_a + g . (px - px_a), solved from three points.
-  const double x1 = b.x_px - a.x_px, y1 = b.y_px - a.y_px, x2 = c.x_px - a.x_px, y2 = c.y_px - a.y_px;
-  const double det = x1 * y2 - x2 * y1;
-  EXPECT_NEAR(std::fabs(((b.z - a.z) * y2 - (c.z - a.z) * y1) / det), a.z_by_x_px, 1e-12);
-  EXPECT_NEAR(std::fabs(((c.z - a.z) * x1 - (b.z - a.z) * x2) / det), a.z_by_y_px, 1e-12);
+  for (const kernels::ClipSpace space : test::clip_spaces) {
+    const shadow_map::View view{kernels::look_at(v.eye, v.target, v.up).eye_from_world,
+                                kernels::perspective(v.fov_y, 1, 0.5, 20, space),
+                                kernels::Viewport({100, 100}, space.y_down)};
+    const auto on_plane = [&](double x, double z) {
+      return dvec3(x, 0.3 - (face.normal.x * x + face.normal.z * z) / face.normal.y, z);
+    };
+    const auto a = shadow_map::seen_from_light(view, face, on_plane(0.4, 0.1)).value();
+    const auto b = shadow_map::seen_from_light(view, face, on_plane(0.9, 0.2)).value();
+    const auto c = shadow_map::seen_from_light(view, face, on_plane(0.5, 0.8)).value();
+    // z = z_a + g . (px - px_a), solved from three points.
+    const double x1 = b.x_px - a.x_px, y1 = b.y_px - a.y_px, x2 = c.x_px - a.x_px, y2 = c.y_px - a.y_px;
+    const double det = x1 * y2 - x2 * y1;
+    EXPECT_NEAR(std::fabs(((b.z - a.z) * y2 - (c.z - a.z) * y1) / det), a.z_by_x_px, 1e-12);
+    EXPECT_NEAR(std::fabs(((c.z - a.z) * x1 - (b.z - a.z) * x2) / det), a.z_by_y_px, 1e-12);
+  }
 }
 
 std::string refusal(const test::NodeInputs& in) {

@@ -5,6 +5,7 @@
 #include "nodes/visibility.h"
 #include "tests/nodes/rasterize/screen_mesh.h"
 
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -85,8 +86,9 @@ ScreenMeshMaker<R> soup(Random& random, Soup kind, int faces) {
 
 // With origins in another order than faces where `shuffled`.
 template <class R>
-Buffer screen_buffer(const ScreenMeshMaker<R>& m, Random& random, bool reversed_z, bool shuffled) {
-  auto mesh = m.make(scene_size, reversed_z);
+Buffer screen_buffer(const ScreenMeshMaker<R>& m, Random& random, bool reversed_z, bool shuffled,
+                     int subpixel_bits = 8) {
+  auto mesh = m.make(scene_size, reversed_z, subpixel_bits);
   if (shuffled) {
     std::vector<std::uint32_t> origin(m.face.size());
     for (auto& o : origin) o = static_cast<std::uint32_t>(random.below(origin.size()));
@@ -119,8 +121,8 @@ inline Raster shown(const NodeType& type, const NodeInputs& inputs, Precision pr
   return run_node(type, params, inputs, &ctx, {}, tile_edge).at(0).as<Visibility>()->raster;
 }
 
-// Runs `show(mesh, pattern, precision)` over random scenes of all kinds and asks for the bytes of
-// rasterize.triangles.
+// Runs `show(mesh, pattern, precision)` over random scenes of all kinds, on grids of 8, 4 and 6 bits below a pixel,
+// and asks for the bytes of rasterize.triangles.
 template <class R>
 void expect_depth_buffer(Precision precision, int rounds,
                          const std::function<Raster(const Buffer&, const Buffer&, Precision)>& show) {
@@ -129,7 +131,8 @@ void expect_depth_buffer(Precision precision, int rounds,
     for (const Soup kind :
          {Soup::any, Soup::small, Soup::piercing, Soup::grid, Soup::level, Soup::slivers, Soup::spheres}) {
       const auto m = soup<R>(random, kind, kind == Soup::piercing ? 16 : 50);
-      const Buffer mesh = screen_buffer(m, random, round % 2 == 1, round % 3 == 1);
+      const Buffer mesh = screen_buffer(m, random, round % 2 == 1, round % 3 == 1,
+                                        std::array{8, 4, 6}[static_cast<std::size_t>(round % 3)]);
       const Raster want = shown(nodes::rasterize_triangles(), {{mesh}, {scene_pattern()}}, precision);
       ASSERT_EQ(differences(want, show(mesh, scene_pattern(), precision)), 0)
           << "soup " << static_cast<int>(kind) << ", round " << round;
