@@ -55,7 +55,8 @@ NodeType nodes::shade_material() {
       .doc("Says how a surface reflects light: Lambert, with a Phong or Blinn highlight.")
       .cite("Lambert 1760; Phong 1975, doi:10.1145/360825.360839; Blinn 1977, doi:10.1145/563858.563893")
       .covers(49, 50)
-      .param("name", &Params::name, "For people and files; nothing depends on it.")
+      .param("name", &Params::name,
+             "For people, files, and nodes that choose faces by what they are made of.")
       .param("model", &Params::model,
              "lambert has no highlight; phong mirrors the light, blinn uses the half vector.")
       .param("ambient", &Params::ambient, "Share of ambient light reflected, times the diffuse colour.",

@@ -218,7 +218,7 @@ std::uint32_t nearer_of(float first, float second, zbuffer::Format format) {
   mesh.add({0, 0, second, 1}, {8, 0, second, 1}, {0, 8, second, 1}, 1);
   Picture p = filled({}, 2, 2);
   const zbuffer::DepthBuffer<float> buffer(mesh.mesh(), kernels::centre_sample(), {0, 0, 2, 2},
-                                           kernels::DepthOrder::standard, format,
+                                           kernels::DepthRange::minus_one_to_one, format,
                                            zbuffer::Interpolation::plane, {});
   buffer.fill({0, 0, 2, 2}, {p.id.data(), 2, 0}, {p.z.data(), 2, 0});
   return p.id[0];
