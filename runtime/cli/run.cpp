@@ -149,6 +149,7 @@ std::optional<Diagnostic> trace_over_output(const Graph& graph, const RunOptions
     if (!trace.empty() && place(output_path(graph.outputs[i], options)) == place(trace))
       return Diagnostic{
           .code = "duplicate_file",
+          .pointer = "",
           .message = fmt::format("--trace and output '{}' are one file, {}", graph.outputs[i].name, trace),
           .expected = "another file",
           .got = trace};
