@@ -1,9 +1,7 @@
 #include "nodes/visibility/zbuffer.h"
 
 #include "nodes/visibility.h"
-#include "runtime/buffers/pattern.h"
-#include "runtime/buffers/screen_view.h"
-#include "runtime/core/node_type.h"
+#include "runtime/buffers/face_finder.h"
 
 #include <fmt/format.h>
 
@@ -35,13 +33,7 @@ struct Outputs {
   Tiled<Depth> depth;
 };
 
-template <class R>
-struct Buffered {
-  ScreenView<R> view;
-  Ref<SamplePattern> pattern;
-  zbuffer::DepthBuffer<R> buffer;
-};
-using State = std::variant<Buffered<float>, Buffered<double>>;
+using State = FaceFinders<zbuffer::DepthBuffer<float>, zbuffer::DepthBuffer<double>>;
 
 // Marks the faces made of one of these materials; empty where none is named, which means all.
 std::vector<std::uint8_t> faces_made_of(const Mesh& mesh, const std::vector<std::string>& names,
@@ -68,30 +60,18 @@ std::vector<std::uint8_t> faces_made_of(const Mesh& mesh, const std::vector<std:
 }
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
-  const Rect window = picture_window(*in.mesh);
-  return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
-    ScreenView<R> view(in.mesh);
-    Ref<SamplePattern> pattern = in.pattern.value_or(nullptr);
-    zbuffer::DepthBuffer<R> buffer(view.triangles(), sample_positions(pattern.get()), pixel_rect(window),
-                                   clip_space(in.mesh->camera.get()).depth, p.format, p.interpolation,
-                                   [&ctx](std::uint64_t bytes) { ctx.claim(bytes); });
+  return prepare_finder<State, Outputs>(in, ctx, [&]<class R>(const FinderScene<R>& s) {
+    zbuffer::DepthBuffer<R> buffer(s.mesh, s.pattern, s.window, clip_space(in.mesh->camera.get()).depth,
+                                   p.format, p.interpolation, s.claim);
     buffer.set_bias({p.bias_constant, p.bias_slope, p.bias_clamp},
                     faces_made_of(*in.mesh, p.bias_materials, ctx));
     ctx.count("triangle_bin_pairs", buffer.bins().entries.size());
-    Frame visibility = visibility_frame<R>(window, pattern), depth = depth_frame<R>(window, pattern);
-    return {Buffered<R>{std::move(view), std::move(pattern), std::move(buffer)},
-            {std::move(visibility), std::move(depth)}};
+    return buffer;
   });
 }
 
 void tile(const State& state, const TilesOf<Inputs>&, const TilesOf<Outputs>& out, Arena& arena) {
-  std::visit(
-      [&]<class R>(const Buffered<R>& buffered) {
-        fill_visibility<R>(out[&Outputs::visibility], out[&Outputs::depth], arena,
-                           [&](kernels::PixelRect rect, kernels::PlaneView<std::uint32_t> id,
-                               kernels::PlaneView<R> z) { buffered.buffer.fill(rect, id, z); });
-      },
-      state);
+  fill_faces(state, out, arena);
 }
 
 }  // namespace

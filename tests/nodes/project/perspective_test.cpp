@@ -84,5 +84,34 @@ TEST(ProjectPerspective, RefusesImpossibleVolumes) {
   EXPECT_EQ(code([](Camera& c) { c.near_z = std::nan(""); }), "impossible_camera");
 }
 
+// A far ball shone through a near one, in silence, where all depths had become one number.
+TEST(ProjectPerspective, ANearPlaneTooNearIsSaid) {
+  const auto warnings = [](double near, bool reversed, const std::vector<glm::vec3>& points,
+                           Precision precision = Precision::single) {
+    Camera c = camera();
+    c.near_z = near, c.far_z = 1000, c.reversed_z = reversed;
+    Context ctx;
+    ctx.precision = precision;
+    test::run_node(
+        nodes::project_perspective(), Json::object(),
+        {{test::shared(test::mesh_of(points, {}, Space::eye))}, {std::make_shared<const Camera>(c)}}, &ctx);
+    return ctx.warnings();
+  };
+  const std::vector<glm::vec3> two{{0, 0, -4}, {0, 0, -9}};
+  for (const bool reversed : {false, true}) {
+    EXPECT_TRUE(warnings(0.1, reversed, two).empty());
+    EXPECT_TRUE(warnings(1e-60, reversed, {{0, 0, -4}, {1, 2, -4}}).empty()) << "equally far";
+    EXPECT_TRUE(warnings(1e-60, reversed, {{0, 0, 4}, {0, 0, 9}}).empty()) << "behind the eye";
+    const auto w = warnings(1e-60, reversed, two);
+    ASSERT_EQ(w.size(), 1u) << reversed;
+    EXPECT_EQ(w[0].first, "one_depth");
+    EXPECT_NE(w[0].second.find("vertices 4 and 9 away have the same depth in single"), std::string::npos)
+        << w[0].second;
+  }
+  EXPECT_EQ(warnings(1e-300, false, two, Precision::real_double).size(), 1u);
+  EXPECT_TRUE(warnings(1e-12, false, two, Precision::real_double).empty());
+  EXPECT_EQ(warnings(1e-12, false, two).size(), 1u);
+}
+
 }  // namespace
 }  // namespace frustum
