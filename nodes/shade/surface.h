@@ -126,13 +126,25 @@ void add_row(const R* light, const R* reach, const Run& run, R* to) {
     to[x] = to[x] + (reach == nullptr ? light[x] : light[x] * reach[x]);
 }
 
-/// Scales a row's premultiplied colours by the opacity of the face that each shows; nothing seen stays nothing.
+/// Scales a row's premultiplied colours by the opacity of the face that each shows; nothing seen stays nothing. Blocks of
+/// a fixed length vectorise.
 template <std::floating_point R>
 void fade_row(const Scene<R>& s, const std::uint32_t* id, std::size_t n, const kernels::ColorRows<R>& out) {
   if (s.opacity.empty()) return;
-  for (R* plane : out.plane)
-    for (std::size_t x = 0; x < n && plane != nullptr; ++x)
-      if (id[x] < s.opacity.size()) plane[x] *= s.opacity[id[x]];
+  constexpr std::size_t block = 16;
+  const auto of = [&](std::uint32_t face) { return face < s.opacity.size() ? s.opacity[face] : R(1); };
+  std::size_t x = 0;
+  for (; x + block <= n; x += block) {
+    std::array<R, block> opacity;
+    for (std::size_t k = 0; k < block; ++k) opacity[k] = of(id[x + k]);
+    for (R* plane : out.plane) {
+      if (plane == nullptr) continue;
+      for (std::size_t k = 0; k < block; ++k) plane[x + k] *= opacity[k];
+    }
+  }
+  for (; x < n; ++x)
+    for (R* plane : out.plane)
+      if (plane != nullptr) plane[x] *= of(id[x]);
 }
 
 /// Whether a point of the row that shows a face is not opaque; null: all are. Blocks of a fixed length vectorise.
