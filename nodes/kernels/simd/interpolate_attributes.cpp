@@ -1,7 +1,5 @@
 #include "nodes/kernels/simd/interpolate_attributes.h"
 
-#include <hwy/cache_control.h>
-
 #include <bit>
 #include <cstring>
 
@@ -10,6 +8,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "nodes/kernels/simd/attribute_points-inl.h"
 #include "nodes/kernels/simd/order-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -17,242 +16,6 @@ namespace frustum::kernels::simd {
 namespace HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Float = hn::ScalableTag<float>;
-using Double = hn::ScalableTag<double>;
-using HalfFloat = hn::Rebind<float, Double>;  // as many lanes as Double has
-using HalfInt = hn::Rebind<std::int32_t, Double>;
-using Floats = hn::Vec<Float>;
-using Doubles = hn::Vec<Double>;
-
-// A row is worked in stretches of this many pixels, so that what passes between the steps stays in the first
-// cache.
-constexpr int stretch = 64;
-static_assert(stretch % hn::MaxLanes(Float()) == 0 && stretch <= 32 * 4);
-
-using Quads = float[stretch][4];
-
-// One stretch of one row: which faces are seen and the weights of their corners.
-struct Points {
-  HWY_ALIGN std::uint32_t face[stretch];       // no_face: nothing is seen
-  HWY_ALIGN std::uint32_t held[stretch];       // the face, or a neighbour's where nothing is seen
-  HWY_ALIGN std::uint32_t vertex[3][stretch];  // of the held face
-  HWY_ALIGN std::int32_t base[stretch];
-  HWY_ALIGN float u[stretch], v[stretch], u_dx[stretch], v_dx[stretch], u_dy[stretch], v_dy[stretch],
-      w[stretch];
-  HWY_ALIGN std::int32_t offset_x[stretch], offset_y[stretch];
-  HWY_ALIGN Quads corner[3];  // screen corners, then attributes of the corners
-  // Of a vector of points that see one face or two: these, the same twice for one; the lanes that `pair` tells apart.
-  struct Pair {
-    bool holds;
-    std::uint32_t face[2];
-    glm::uvec3 vertex[2];
-    hn::Mask<Float> first;
-  };
-  Pair pair[stretch / hn::MaxLanes(Float())];
-
-  HWY_INLINE Pair& pair_from(int i) { return pair[i / static_cast<int>(hn::Lanes(Float()))]; }
-};
-
-struct Stretch {
-  int sample, x, y;  // absolute pixel of its first point
-  int count;         // of pixels, 1 to `stretch`
-};
-
-// Asks for the corners and attributes of the faces seen, which lie anywhere in memory, well before they are
-// used.
-void prefetch(const AttributeScene<float>& scene, const AttributePlanes<float>& planes,
-              const std::uint32_t* ids, int count) {
-  std::uint32_t last = no_face;
-  for (int i = 0; i < count; ++i) {
-    if (ids[i] == last || ids[i] == no_face) continue;
-    last = ids[i];
-    const glm::uvec3 vertex = scene.mesh.face[last];
-    for (int k = 0; k < 3; ++k) {
-      hwy::Prefetch(&scene.mesh.position[vertex[k]]);
-      for (const Attribute<float>& a : planes.attributes)
-        if (a.domain == AttributeDomain::vertex)
-          hwy::Prefetch(a.data + vertex[k] * static_cast<std::size_t>(a.width));
-    }
-  }
-}
-
-HWY_INLINE hn::Mask<Float> seen_from(const Points& p, int i) {
-  const hn::RebindToUnsigned<Float> du;
-  return hn::RebindMask(Float(), hn::Ne(hn::Load(du, p.face + i), hn::Set(du, no_face)));
-}
-
-// Loads the faces of the points from i on; returns whether any is seen. Points beyond the stretch see
-// nothing.
-HWY_INLINE bool load_faces(const std::uint32_t* ids, int count, int i, Points& p) {
-  const hn::RebindToUnsigned<Float> du;
-  if (i + static_cast<int>(hn::Lanes(du)) <= count) {
-    hn::Store(hn::LoadU(du, ids + i), du, p.face + i);
-  } else {
-    hn::Store(hn::Set(du, no_face), du, p.face + i);
-    for (int k = i; k < count; ++k) p.face[k] = ids[k];
-  }
-  return !hn::AllFalse(Float(), seen_from(p, i));
-}
-
-// Finds whether the points from i on see two faces at most.
-HWY_INLINE bool find_pair(const AttributeScene<float>& scene, int i, Points& p) {
-  const hn::RebindToUnsigned<Float> du;
-  const auto face = hn::Load(du, p.face + i), none = hn::Set(du, no_face);
-  const auto first_of = [&](auto mask) HWY_ATTR {
-    return p.face[i + static_cast<int>(hn::FindKnownFirstTrue(du, mask))];
-  };
-  Points::Pair& pair = p.pair_from(i);
-  const auto seen = hn::Ne(face, none);
-  pair.face[0] = pair.face[1] = first_of(seen);
-  const auto first = hn::Eq(face, hn::Set(du, pair.face[0])), others = hn::AndNot(first, seen);
-  pair.first = hn::RebindMask(Float(), first);
-  if (!hn::AllFalse(du, others)) pair.face[1] = first_of(others);
-  pair.holds = hn::AllFalse(du, hn::And(others, hn::Ne(face, hn::Set(du, pair.face[1]))));
-  for (int k = 0; k < 2 && pair.holds; ++k) pair.vertex[k] = scene.mesh.face[pair.face[k]];
-  return pair.holds;
-}
-
-// Loads the screen corners of the points from i on, some of which see a face. The others hold a face, too, so
-// that what is loaded for them exists.
-void load_points(const AttributeScene<float>& scene, int i, Points& p) {
-  if (find_pair(scene, i, p)) return;
-  const int end = i + static_cast<int>(hn::Lanes(Float()));
-  std::uint32_t held = p.pair_from(i).face[0];
-  glm::uvec3 vertex = scene.mesh.face[held];
-  for (; i < end; ++i) {
-    const bool seen = p.face[i] != no_face;
-    if (seen && p.face[i] != held) {
-      held = p.face[i];
-      vertex = scene.mesh.face[held];
-    }
-    p.held[i] = held;
-    for (int k = 0; k < 3; ++k) {
-      p.vertex[k][i] = vertex[k];
-      std::memcpy(p.corner[k][i], &scene.mesh.position[vertex[k]].x, sizeof(p.corner[k][i]));
-    }
-  }
-}
-
-// Loads the offsets of the samples of the points from i on. Where all pixels have the same samples, they are
-// there since the sample was begun.
-void load_offsets(const SamplePositions& pattern, const Stretch& at, int i, Points& p) {
-  if (pattern.period == 1) return;
-  const std::size_t row = pattern.index(at.sample, 0, at.y);
-  for (const int end = i + static_cast<int>(hn::Lanes(Float())); i < end; ++i) {
-    const std::size_t k = row + static_cast<std::size_t>((at.x + i) & (pattern.period - 1));
-    p.offset_x[i] = pattern.x[k];
-    p.offset_y[i] = pattern.y[k];
-  }
-}
-
-struct LaneCorners {
-  Doubles x[3], y[3], per_w[3], q[3];
-};
-
-// The screen corners of the points of a vector: on the grid, and 1/w.
-struct GridCorners {
-  hn::Vec<hn::RebindToSigned<Float>> x[3], y[3];
-  Floats per_w[3];
-
-  HWY_INLINE GridCorners(const AttributeScene<float>& scene, Points& p, int i) {
-    const Float df;
-    const auto scale = hn::Set(df, static_cast<float>(1 << scene.mesh.corner_bits));
-    const int shift = corner_bits - scene.mesh.corner_bits;
-    const Points::Pair& pair = p.pair_from(i);
-    for (int k = 0; k < 3; ++k) {
-      Floats px, py, pz;
-      if (pair.holds) {
-        const glm::vec4 &a = scene.mesh.position[pair.vertex[0][k]],
-                        &b = scene.mesh.position[pair.vertex[1][k]];
-        px = hn::IfThenElse(pair.first, hn::Set(df, a.x), hn::Set(df, b.x));
-        py = hn::IfThenElse(pair.first, hn::Set(df, a.y), hn::Set(df, b.y));
-        per_w[k] = hn::IfThenElse(pair.first, hn::Set(df, a.w), hn::Set(df, b.w));
-      } else {
-        hn::LoadInterleaved4(df, p.corner[k][i], px, py, pz, per_w[k]);
-      }
-      x[k] = hn::ShiftLeftSame(hn::NearestInt(hn::Mul(px, scale)), shift);
-      y[k] = hn::ShiftLeftSame(hn::NearestInt(hn::Mul(py, scale)), shift);
-    }
-  }
-
-  // Of the lower or the upper half of the lanes.
-  template <bool upper>
-  HWY_INLINE LaneCorners half(const AttributeScene<float>& scene) const {
-    const Double dd;
-    const auto part = [&](auto v) HWY_ATTR {
-      const hn::Half<hn::DFromV<decltype(v)>> dh;
-      if constexpr (upper)
-        return hn::PromoteTo(dd, hn::UpperHalf(dh, v));
-      else
-        return hn::PromoteTo(dd, hn::LowerHalf(dh, v));
-    };
-    LaneCorners c;
-    for (int k = 0; k < 3; ++k) {
-      c.x[k] = part(x[k]), c.y[k] = part(y[k]), c.per_w[k] = part(per_w[k]);
-      c.q[k] = scene.interpolation == Interpolation::hyperbolic ? c.per_w[k] : hn::Set(dd, 1.0);
-    }
-    return c;
-  }
-};
-
-// WeightedCorners::at for the points from i on.
-template <bool differentiate>
-HWY_INLINE void weigh(const AttributeScene<float>& scene, const LaneCorners& c, const Stretch& at, int i,
-                      Points& p) {
-  const Double dd;
-  const HalfFloat df;
-  const HalfInt di;
-  const auto scale = hn::Set(dd, double{sample_unit / corner_unit}), unit = hn::Set(dd, double{sample_unit});
-  const auto pixel = hn::PromoteTo(dd, hn::Iota(di, at.x + i));
-  const auto sx = hn::Add(hn::Mul(pixel, unit), hn::PromoteTo(dd, hn::Load(di, p.offset_x + i)));
-  const auto sy =
-      hn::Add(hn::Set(dd, at.y * double{sample_unit}), hn::PromoteTo(dd, hn::Load(di, p.offset_y + i)));
-  Doubles e[3], g[3], g_dx[3], g_dy[3], m[3];
-  for (int k = 0; k < 3; ++k) {
-    const int from = (k + 1) % 3, to = (k + 2) % 3;
-    const auto ex = hn::Sub(c.x[to], c.x[from]), ey = hn::Sub(c.y[to], c.y[from]);
-    e[k] = hn::Sub(hn::Mul(ex, hn::Sub(sy, hn::Mul(c.y[from], scale))),
-                   hn::Mul(ey, hn::Sub(sx, hn::Mul(c.x[from], scale))));
-    g[k] = hn::Mul(e[k], c.q[k]);
-    g_dx[k] = hn::Mul(hn::Mul(ey, hn::Neg(unit)), c.q[k]);
-    g_dy[k] = hn::Mul(hn::Mul(ex, unit), c.q[k]);
-  }
-  const auto sum = [](const Doubles(&v)[3]) { return hn::Add(hn::Add(v[0], v[1]), v[2]); };
-  const auto inverse = hn::Div(hn::Set(dd, 1.0), sum(g));
-  for (int k = 0; k < 3; ++k) m[k] = hn::Mul(g[k], inverse);
-
-  const auto first = hn::And(hn::Ge(m[0], m[1]), hn::Ge(m[0], m[2])), second = hn::Ge(m[1], m[2]);
-  const auto pick = [&](const Doubles& a, const Doubles& b, const Doubles& d) {
-    return hn::IfThenElse(first, a, hn::IfThenElse(second, b, d));
-  };
-  const auto put = [&](const Doubles& v, float* to) { hn::Store(hn::DemoteTo(df, v), df, to + i); };
-  hn::Store(hn::DemoteTo(di, pick(hn::Zero(dd), hn::Set(dd, 1.0), hn::Set(dd, 2.0))), di, p.base + i);
-  put(pick(m[1], m[2], m[0]), p.u);
-  put(pick(m[2], m[0], m[1]), p.v);
-  if (scene.interpolation == Interpolation::affine) {
-    Doubles d[3];
-    for (int k = 0; k < 3; ++k) d[k] = hn::Div(hn::Set(dd, 1.0), c.per_w[k]);
-    const auto a = pick(d[0], d[1], d[2]);
-    const auto b = hn::Mul(pick(m[1], m[2], m[0]), hn::Sub(pick(d[1], d[2], d[0]), a));
-    put(hn::Add(hn::Add(a, b), hn::Mul(pick(m[2], m[0], m[1]), hn::Sub(pick(d[2], d[0], d[1]), a))), p.w);
-  } else {
-    put(hn::Mul(sum(e), inverse), p.w);
-  }
-  if constexpr (differentiate) {
-    const auto slope = [&](const Doubles(&of)[3], float* u, float* v) {
-      const auto total = sum(of);
-      Doubles d[3];
-      for (int k = 0; k < 3; ++k) d[k] = hn::Mul(hn::Sub(of[k], hn::Mul(m[k], total)), inverse);
-      put(pick(d[1], d[2], d[0]), u);
-      put(pick(d[2], d[0], d[1]), v);
-    };
-    slope(g_dx, p.u_dx, p.v_dx);
-    slope(g_dy, p.u_dy, p.v_dy);
-  }
-}
 
 // Copies the attribute of the corners of the points from i on, four numbers apart.
 template <int width>
@@ -410,16 +173,26 @@ void fill_stretch(const AttributeScene<float>& scene, const AttributePlanes<floa
     load_offsets(scene.pattern, at, i, p);
   });
   each_seen(seen, [&](int i) {
-    const GridCorners corners(scene, p, i);
-    const LaneCorners lower = corners.half<false>(scene), upper = corners.half<true>(scene);
-    const int middle = i + static_cast<int>(hn::Lanes(Double()));
-    if (differentiate) {
-      weigh<true>(scene, lower, at, i, p);
-      weigh<true>(scene, upper, at, middle, p);
-    } else {
-      weigh<false>(scene, lower, at, i, p);
-      weigh<false>(scene, upper, at, middle, p);
+    const auto weigh_halves = [&](const LaneEdges& lower, const LaneEdges& upper) HWY_ATTR {
+      const int middle = i + static_cast<int>(hn::Lanes(Double()));
+      if (differentiate) {
+        weigh<true>(scene, lower, at, i, p);
+        weigh<true>(scene, upper, at, middle, p);
+      } else {
+        weigh<false>(scene, lower, at, i, p);
+        weigh<false>(scene, upper, at, middle, p);
+      }
+    };
+    const Points::Pair& pair = p.pair_from(i);
+    if (pair.holds && pair.face[0] == pair.face[1]) {
+      load_edges(scene, pair.face[0], p);
+      return weigh_halves(p.edges, p.edges);
     }
+    const GridCorners corners(scene, p, i);
+    LaneEdges lower, upper;
+    corners.edges_of_half<false>(scene.interpolation, lower);
+    corners.edges_of_half<true>(scene.interpolation, upper);
+    weigh_halves(lower, upper);
   });
   each_seen(seen, [&](int i) { put(planes.w, at, rect, i, seen_from(p, i), hn::Load(Float(), p.w + i)); });
   for (const Attribute<float>& a : planes.attributes) {
@@ -441,6 +214,7 @@ void interpolate_attributes(const AttributeScene<float>& scene, PixelRect rect,
   const bool differentiate = std::any_of(planes.attributes.begin(), planes.attributes.end(),
                                          [](const Attribute<float>& a) { return a.differentiates(); });
   Points points{};
+  points.face_of_edges = no_face;
   for (int s = 0; s < scene.pattern.samples; ++s) {
     const auto sample = static_cast<std::size_t>(s);
     std::fill_n(points.offset_x, stretch, std::int32_t{scene.pattern.x[sample]});
