@@ -268,10 +268,12 @@ Verdict mip_levels(const Inputs& in, const Params& p, const Context&) {
   constexpr double one_texel = 0.98;
   if (p.filter <= Lookup::bilinear) return off_user("the graph asks for a filter that reads level 0 only");
   const std::uint64_t samples = samples_of(in);
-  bool any = false;
+  bool pyramids = false, any = false;
   for (const Shown& shown : textures_of(in)) {
     const auto* pyramid = std::get_if<MipPyramid>(&shown.texture->source);
-    if (pyramid == nullptr || pyramid->levels.size() < 2 || constant_color(*shown.texture)) continue;
+    if (pyramid == nullptr || constant_color(*shown.texture)) continue;
+    pyramids = true;
+    if (pyramid->levels.size() < 2) continue;
     any = true;
     const auto has = fmt::format("{} has {} levels", shown.name, pyramid->levels.size());
     if (!in.mesh) return on(has, samples);
@@ -280,7 +282,8 @@ Verdict mip_levels(const Inputs& in, const Params& p, const Context&) {
       return on(fmt::format("{}, and a pixel of face {} may see more than one texel", has, *face), samples);
   }
   if (any) return off_exact("no pixel of the mesh sees more than one texel of level 0", samples);
-  return off_exact("no texture that is looked up has a second level", samples);
+  // Where there is no pyramid at all, nothing is done if it is forced.
+  return off_exact("no texture that is looked up has a second level", pyramids ? samples : 0);
 }
 
 // Whether colours are other than opaque; what is behind is another node's to know.
@@ -485,7 +488,8 @@ NodeType nodes::texture_sample() {
               {"sample",
                45})  // tests/bench/effects_bench.cpp, one thread, a machine shared with others: 41 to 52
       .effect(levels_name, mip_levels,
-              "A level of the pyramid is chosen by the footprint of every point, and two blended.")
+              "A level of the pyramid is chosen by the footprint of every point, and two blended.",
+              {"sample", 2.2})
       .effect("transparency", transparency, "Colours carry the opacity of textures and vertices.")
       .output("image", &Outputs::image, "Colour at every sample, linear Rec.709, premultiplied.");
 }

@@ -51,8 +51,8 @@ std::vector<std::uint8_t> faces_that_hide(const Inputs& in) {
 Verdict hiding(const Inputs& in, const Params&, const Context&) {
   const std::vector<std::uint8_t> opaque = faces_that_hide(in);
   const auto faces = static_cast<std::uint64_t>(std::count(opaque.begin(), opaque.end(), 1));
-  if (faces == 0) return off_exact("no face is opaque: every fragment shows");
-  return on(fmt::format("{} of {} faces are opaque", faces, in.mesh->faces()), faces);
+  if (faces == 0) return off_exact("no face is opaque: every fragment shows", in.mesh->faces());
+  return on(fmt::format("{} of {} faces are opaque", faces, in.mesh->faces()), in.mesh->faces());
 }
 
 void report(const kernels::TriangleBins& bins, const kernels::FragmentCounts& counts, int layers,
@@ -176,8 +176,9 @@ NodeType nodes::visibility_abuffer() {
       .output(
           "layers", &Outputs::layers,
           "Face and depth by layer: sample l * samples + s is the l-th fragment at sample s; ties by source.")
-      .shortcut(hiding_name, hiding,
-                "Fragments behind an opaque one are left out: nothing of them would show.");
+      .shortcut(
+          hiding_name, hiding, "Fragments behind an opaque one are left out: nothing of them would show.",
+          {"face", 3});  // tests/bench/effects_bench.cpp, one thread: to find out that no face is opaque
 }
 
 }  // namespace frustum

@@ -48,8 +48,11 @@ int layers_of(const Inputs& in) {
 
 Verdict transparency(const Inputs& in, const Params&, const Context&) {
   const int layers = layers_of(in);
-  if (layers == 1) return off_exact("there is one layer: nothing lies behind what is seen");
-  return on(fmt::format("some sample has {} layers", layers));
+  const Frame& from = in.image.frame();
+  const auto samples =
+      static_cast<std::uint64_t>(from.window.area()) * static_cast<std::uint64_t>(from.samples());
+  if (layers == 1) return off_exact("there is one layer: nothing lies behind what is seen", samples);
+  return on(fmt::format("some sample has {} layers", layers), samples);
 }
 
 Prepared<State, Outputs> prepare(const Inputs& in, const Params&, Context& ctx) {
@@ -143,7 +146,8 @@ NodeType nodes::visibility_composite() {
       .input("pattern", &Inputs::pattern,
              "The pattern that visibility.abuffer has; left out: one sample a pixel.")
       .output("image", &Outputs::image, "One colour a sample, premultiplied; 0 where nothing is.")
-      .effect(transparency_name, transparency, "What lies behind the nearest face shines through.");
+      .effect(transparency_name, transparency, "What lies behind the nearest face shines through.",
+              {"sample", 15});  // tests/bench/effects_bench.cpp, one thread, shared with others: 11 to 24
 }
 
 }  // namespace frustum

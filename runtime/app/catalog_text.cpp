@@ -90,7 +90,9 @@ std::string effects_table(const NodeType& type) {
 }  // namespace
 
 std::string cost_text(const EffectCost& cost) {
-  return cost.item.empty() ? "" : fmt::format("{:.2g} ns a {}", cost.ns, cost.item);
+  if (cost.item.empty()) return "";
+  const double two_digits = cost.ns < 100 ? cost.ns : std::round(cost.ns / 10) * 10;
+  return fmt::format("{:.{}g} ns a {}", two_digits, two_digits < 100 ? 2 : 4, cost.item);
 }
 
 std::string type_names(const Port& port) {

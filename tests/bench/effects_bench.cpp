@@ -50,6 +50,51 @@ std::string graph(const std::string& mesh, const std::string& projection, int sa
 
 const std::string ball = R"({ "type": "mesh.sphere", "params": { "segments": 512, "rings": 256 } })";
 const std::string box = R"({ "type": "mesh.box", "params": { "size": [2, 2, 1] } })";
+const std::string fine_sheet =
+    R"({ "type": "mesh.grid", "params": { "size": [1.4, 1], "segments": [256, 256] } })";
+
+// A flat sheet, all of it in the picture, and a texture whose texels are larger than pixels everywhere.
+std::string textured_sheet() {
+  std::string text = graph(R"({ "type": "mesh.grid", "params": { "size": [1.4, 1] } },
+    "tiles": { "type": "io.load_image", "params": { "file": "graphs/data/card.png" } },
+    "texture": { "type": "texture.image", "in": { "image": "tiles" } })",
+                           "project.perspective", 4, "mitchell", "phong", "[0, 1.4, 0.6]");
+  const std::string plain = R"("points": "points", "mesh": "screen" } },
+    "lit")";
+  return text.replace(text.find(plain), plain.size(), R"("points": "points", "mesh": "screen", "texture": "texture" } },
+    "lit")");
+}
+
+// Every fragment of the picture by an A-buffer: `mesh`, of which nothing hides another part, seen from above.
+std::string layered(const std::string& mesh, const std::string& opacity) {
+  return R"({ "format": "frustum.graph/1", "nodes": {
+    "made": )" +
+         mesh + R"(,
+    "mesh": { "type": "shade.transparency", "in": { "mesh": "made" }, "params": { "opacity": )" +
+         opacity + R"( } },
+    "camera": { "type": "scene.camera", "params": { "eye": [0, 1.4, 0.6], "resolution": [960, 540] } },
+    "light": { "type": "light.ambient" },
+    "eye": { "type": "project.view", "in": { "mesh": "mesh", "camera": "camera" } },
+    "clip": { "type": "project.perspective", "in": { "mesh": "eye", "camera": "camera" } },
+    "cut": { "type": "clip.homogeneous", "in": { "mesh": "clip" } },
+    "screen": { "type": "project.viewport", "in": { "mesh": "cut", "camera": "camera" } },
+    "pattern": { "type": "supersample.pattern", "params": { "samples": 4 } },
+    "lists": { "type": "visibility.abuffer", "in": { "mesh": "screen", "pattern": "pattern" } },
+    "points": { "type": "rasterize.attributes", "in": { "hits": "lists", "mesh": "screen" } },
+    "lit": { "type": "shade.surface", "in": { "points": "points", "mesh": "screen", "lights": ["light"] },
+             "params": { "interpolation": "flat", "two_sided": true } },
+    "through": { "type": "visibility.composite", "in": { "image": "lit", "pattern": "pattern" } } },
+  "outputs": { "image": { "from": "through" } } })";
+}
+
+// A ball whose back faces are culled.
+std::string culled_ball() {
+  std::string text = graph(ball, "project.perspective", 1, "box");
+  const std::string cut = R"("mesh": "cut", "camera": "camera" } },)";
+  const std::string front = R"("mesh": "front", "camera": "camera" } },
+    "front": { "type": "cull.backface", "in": { "mesh": "cut" } },)";
+  return text.replace(text.find(cut), cut.size(), front);
+}
 
 // Time of the processor, not of the clock: what else runs on the machine takes its turn and is not counted. No thread but
 // one runs.
@@ -75,13 +120,16 @@ struct Setting {
 
 void forced_against_planned(benchmark::State& state, const Setting& setting) {
   Session session;
-  const Loaded loaded = load_graph_text(setting.text, "bench.json", session.registry());
+  const Loaded loaded =
+      load_graph_text(setting.text, (source_root(executable_path()).value_or(".") / "bench.json").string(),
+                      session.registry());
   if (!loaded.graph) return state.SkipWithError(to_text(loaded.problems).c_str());
   const Graph& g = *loaded.graph;
   const Demand demand{.ports = *setting.want != 0 ? std::vector{*g.find_port(setting.want)} : named_ports(g)};
   std::uint64_t items = 0;
   for (const PlannedEffect& e : plan_effects(session, g, demand).effects)
-    if (e.effect == setting.effect && e.verdict && e.verdict->kind == Verdict::Kind::off_exact)
+    if (e.effect == setting.effect && e.verdict &&
+        (e.verdict->kind == Verdict::Kind::off_exact || e.verdict->kind == Verdict::Kind::off_user))
       items = e.verdict->items;
   if (items == 0) return state.SkipWithError("the scene calls for it");
   double least_planned = 1e9, least_forced = 1e9;
@@ -142,6 +190,10 @@ const bool registered = [] {
   add({"normal_interpolation", graph(box, perspective, 4, wide), "points.points"});
   add({"reconstruction", graph(ball, perspective, 1, "box")});
   add({"supersampling", graph(box, perspective, 4, wide, "flat"), "lit.color"});
+  add({"mip_levels", textured_sheet(), "albedo.image"});
+  add({"transparency", layered(fine_sheet, "1")});
+  add({"hidden_by_opaque", layered(fine_sheet, "0.5"), "lists.layers"});
+  add({"back_faces", culled_ball(), "hits.visibility"});
   for (const char* file : {"teapot_plaster.json", "teapot.json", "near_plane.json"})
     benchmark::RegisterBenchmark((std::string("estimate/") + file).c_str(),
                                  [file](benchmark::State& s) { estimate_against_saving(s, file); })
