@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <set>
 
 namespace frustum::cli {
 namespace {
@@ -106,6 +107,11 @@ void accept(const Arguments& args, const std::vector<Suite>& suites, const std::
 }
 
 std::vector<Suite> load(const std::vector<std::string>& paths, Diagnostics& problems) {
+  std::error_code none;
+  std::set<fs::path> seen;
+  for (const std::string& path : paths)
+    if (!seen.insert(fs::weakly_canonical(path, none)).second)
+      throw UsageError(fmt::format("{} is given twice", path));
   std::vector<Suite> suites;
   for (const std::string& path : paths)
     if (auto suite = load_suite(path, problems)) suites.push_back(std::move(*suite));

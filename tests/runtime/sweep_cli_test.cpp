@@ -109,6 +109,13 @@ TEST(TestCli, ResultsAreTriedBeforeAnythingRuns) {
     }
 }
 
+TEST(TestCli, ASuiteRunsOnce) {
+  const OneCase c;
+  const auto r = frustum({"test", c.suite, c.folder.file("./s.json")});
+  EXPECT_EQ(r.code, 2);
+  EXPECT_THAT(r.err, HasSubstr("is given twice"));
+}
+
 TEST(TestCli, ReportsOneCheckAsOne) {
   const OneCase c;
   EXPECT_THAT(frustum({"test", c.suite}).out, HasSubstr("(1 check, "));

@@ -102,6 +102,11 @@ class Reader {
     if (j.is_object() && (k.id.empty() || k.graph.empty()))
       parser_.missing("a case needs an \"id\" and a \"graph\"");
     if (!k.id.empty() && !case_ids_.insert(k.id).second) duplicate(k.id);
+    if (std::any_of(k.id.begin(), k.id.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }))
+      at_.inside("id", [&] {
+        at_.problem("bad_id", "an id is one line of text: it stands in reports and in commands",
+                    "printable characters");
+      });
     SuiteCase c;
     c.pointer = at_.pointer();
     c.id = k.id, c.tags = k.tags, c.precision = k.precision;
@@ -217,7 +222,7 @@ std::map<std::string, std::vector<std::string>> SuiteParser::matrix(const char* 
     if (!j.is_object()) return wrong("an object of addresses and lists of values");
     for (const auto& [address, list] : j.items()) {
       if (!list.is_array() || list.empty()) {
-        at.inside(address, [&] { wrong("a list of values"); });
+        at.inside(address, [&] { wrong("a list of one or more values"); });
         continue;
       }
       for (const Json& value : list) out[address].push_back(value.dump());
