@@ -373,10 +373,12 @@ class SweepRun {
     SweepPoint& p = c.point;
     const Buffer& exact = reference();
     Measured m;
+    // Where the other knobs are at their most exact values, both errors are one.
+    const bool one = own != nullptr && candidates_[exact_[*p.knob]].point.key == reference_key_;
     timed_into(costs().judging, [&] {
       tbb::parallel_invoke([&] { m = measure(buffer, exact, o_.metrics); },
                            [&] {
-                             if (own != nullptr) measure_own(p, *p.knob, buffer, *own);
+                             if (own != nullptr && !one) measure_own(p, *p.knob, buffer, *own);
                            },
                            [&] { save_pictures(picture_folder(), p.key, buffer, &exact); });
     });
@@ -384,6 +386,7 @@ class SweepRun {
       throw NodeError("not_comparable", fmt::format("{} is not measured against the reference: {}",
                                                     describe(p), m.difference.mismatch));
     p.errors = m.values;
+    if (one) p.own_errors[*p.knob] = m.values.at(o_.metrics.front());
     Json entry = {{"point", p.key}, {"errors", Json::object()}, {"counters", p.counters}, {"work", p.work}};
     for (const auto& [metric, v] : p.errors) entry["errors"][metric] = json_number(v);
     if (p.own_error()) entry["own"] = json_number(*p.own_error());
