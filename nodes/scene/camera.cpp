@@ -4,6 +4,8 @@
 #include "runtime/buffers/camera.h"
 #include "runtime/core/node_type.h"
 
+#include <fmt/format.h>
+
 #include <numbers>
 
 namespace frustum {
@@ -34,6 +36,17 @@ void check(const Params& p) {
     throw NodeError("impossible_camera",
                     "Direct3D snaps corners to 8 bits below a pixel, no more and no fewer",
                     at_param("subpixel_bits"));
+}
+
+std::string states(const Params& p) {
+  const kernels::ClipSpace space = clip_space(p.conventions, p.reversed_z);
+  return fmt::format(
+      "{}: depth {} to {}, y of clip space {}, the {} corner of a face provokes, corners snap to 1/{} px; "
+      "standard samples are those of Vulkan and Direct3D{}",
+      choices(p.conventions)[static_cast<std::size_t>(p.conventions)].second,
+      kernels::near_depth(space.depth), kernels::far_depth(space.depth), space.y_down ? "down" : "up",
+      provoking_corner(p.conventions) == 0 ? "first" : "last", 1 << p.subpixel_bits,
+      p.conventions == Conventions::gl ? ", since OpenGL leaves them open" : "");
 }
 
 Outputs run(const Inputs&, const Params& p, Context&) {
@@ -88,6 +101,7 @@ NodeType nodes::scene_camera() {
              "Width and height of the picture; their ratio is that of the view.",
              {.unit = "px", .range = between(1, 65536)})
       .check(check)
+      .states(states)
       .output("camera", &Outputs::camera, "The camera, for the nodes that project, tessellate and shade.");
 }
 

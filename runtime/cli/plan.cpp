@@ -85,6 +85,11 @@ std::vector<std::string> foreign(const Graph& graph, const Plan& plan) {
   return out;
 }
 
+// What a node's parameters settle for others, in its words; empty for most.
+std::string stated(const GraphNode& node) {
+  return node.type->states ? node.type->states(node.params.get()) : std::string();
+}
+
 Json plan_json(const Graph& graph, const Plan& plan) {
   Json nodes = Json::array(), passes = Json::array(), steps = Json::array();
   for (const PlannedNode& n : plan.nodes) {
@@ -97,6 +102,7 @@ Json plan_json(const Graph& graph, const Plan& plan) {
                      {"kind", node.type->is_pixel() ? "pixels" : "geometry"},
                      {"outputs", outputs},
                      {"wanted_by", n.wanted_by}});
+    if (const std::string sentence = stated(node); !sentence.empty()) nodes.back()["states"] = sentence;
   }
   for (const PixelPass& pass : plan.passes) {
     Json whole = Json::array();
@@ -129,6 +135,9 @@ std::string plan_text(const Graph& graph, const Plan& plan) {
     rows.push_back({node.id, node.type->name, fmt::format("for {}", fmt::join(n.wanted_by, ", "))});
   }
   std::string out = fmt::format("{} nodes run:\n{}", plan.nodes.size(), aligned(rows, 2));
+  for (const PlannedNode& n : plan.nodes)
+    if (const std::string sentence = stated(graph.nodes[n.node]); !sentence.empty())
+      out += fmt::format("as {} has it: {}\n", graph.nodes[n.node].id, sentence);
   for (const PixelPass& pass : plan.passes) {
     const bool saves = pass.outputs.size() == 1 && graph.outputs[pass.outputs.front()].whole;
     if (saves) {

@@ -226,5 +226,31 @@ TEST(CliPlan, SaysWhatItDoesNotCount) {
               HasSubstr("; not counted, since pixels feed them whole: points, "));
 }
 
+// What one node settles for others stands in the plan: of a camera, the conventions of its API.
+TEST(CliPlan, SaysWhichConventionsHold) {
+  const std::string graph = std::string(FRUSTUM_SOURCE_DIR) + "/graphs/lessons/02_transform/conventions.json";
+  EXPECT_THAT(
+      frustum({"plan", graph}).out,
+      HasSubstr(
+          "\nas camera has it: gl: depth -1 to 1, y of clip space up, the last corner of a face provokes, "
+          "corners snap to 1/256 px; standard samples are those of Vulkan and Direct3D, since OpenGL "
+          "leaves them open\n"));
+  EXPECT_THAT(frustum({"plan", graph, "--set", "conventions=d3d"}).out,
+              HasSubstr("d3d: depth 0 to 1, y of clip space up, the first corner"));
+  const auto r = frustum({"plan", graph, "--set", "conventions=vulkan", "--set", "camera:reversed_z=true",
+                          "--set", "camera:subpixel_bits=4", "--json"});
+  ASSERT_EQ(r.code, 0) << r.out << r.err;
+  int stated = 0;
+  for (const json& node : json::parse(r.out)["nodes"])
+    if (node.contains("states")) {
+      ++stated;
+      EXPECT_EQ(node["id"], "camera");
+      EXPECT_EQ(node["states"],
+                "vulkan: depth 1 to 0, y of clip space down, the first corner of a face provokes, corners "
+                "snap to 1/16 px; standard samples are those of Vulkan and Direct3D");
+    }
+  EXPECT_EQ(stated, 1);
+}
+
 }  // namespace
 }  // namespace frustum

@@ -210,6 +210,10 @@ TEST(Outcode, PutsNaNOutsideEverything) {
   EXPECT_EQ(kernels::outcode(volume, glm::vec4(0, 0, 0, 1)), 0);
   EXPECT_EQ(kernels::outcode(volume, glm::vec4(-1, 1, -1, 1)), 0);
   EXPECT_EQ(kernels::outcode(volume, glm::vec4(0, 0, -2, 1)), 1);
+  const auto from_zero = kernels::view_volume({.depth = kernels::DepthRange::zero_to_one});
+  EXPECT_EQ(kernels::outcode(from_zero, glm::vec4(0, 0, -0.5F, 1)), 1);
+  EXPECT_EQ(kernels::outcode(from_zero, glm::vec4(0, 0, 2, 1)), 2);
+  EXPECT_EQ(kernels::outcode(from_zero, glm::vec4(0, 0, 0, 1)), 0);
   EXPECT_EQ(kernels::outcode(kernels::view_volume({.depth = kernels::DepthRange::one_to_zero}),
                              glm::vec4(0, 0, 2, 1)),
             1);
