@@ -126,9 +126,9 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
 NodeType nodes::vector_line() {
   return node("vector.line", run)
       .doc(
-          "Writes a line as explicit, implicit and parametric form, says exactly on which side points lie, "
-          "and "
-          "where it meets another line.")
+          "Writes a line in its three forms, says exactly on which side points lie, and where it meets "
+          "another "
+          "line.")
       .cite("Shewchuk 1997, Adaptive precision predicates; C++20 std::lerp (P0811); errata E3 and E4")
       .covers(5, 6, 7)
       .input("through", &Inputs::through, "Two points; the implicit and explicit forms are of x and y, y up.")
@@ -139,10 +139,9 @@ NodeType nodes::vector_line() {
       .output("forms", &Outputs::forms, "The coefficients; a vertical line has no explicit form.")
       .output("sides", &Outputs::sides,
               "f, the exact side and whether above, and the side that plain arithmetic would give.")
-      .output(
-          "meeting", &Outputs::meeting,
-          "Where the other line meets this one, at which t of both, and 1 / |sin| of their angle, by which "
-          "rounding of the points is enlarged; without a row where they are parallel.");
+      .output("meeting", &Outputs::meeting,
+              "Where the other line is met, t of both, 1 / |sin| of their angle; no row where they are "
+              "parallel.");
 }
 
 }  // namespace frustum

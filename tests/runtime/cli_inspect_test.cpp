@@ -241,7 +241,8 @@ TEST(CliPlan, SaysWhichConventionsHold) {
                           "--set", "camera:subpixel_bits=4", "--json"});
   ASSERT_EQ(r.code, 0) << r.out << r.err;
   int stated = 0;
-  for (const json& node : json::parse(r.out)["nodes"])
+  const json plan = json::parse(r.out);
+  for (const json& node : plan["nodes"])
     if (node.contains("states")) {
       ++stated;
       EXPECT_EQ(node["id"], "camera");

@@ -220,7 +220,8 @@ TEST(Ply, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(problem(body("0 0 0\n1 0 0 7\n0 1 0\n3 0 1 2\n")),
             "m.ply:11: vertex 1: '7' is more than the row holds");
   EXPECT_EQ(problem(body("0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n")), "m.ply:12: vertex 2: nan is not finite");
-  EXPECT_EQ(problem(body("0 0 0\n1 0 0\n0 1e400 0\n3 0 1 2\n")), "m.ply:12: vertex 2: inf is not finite");
+  EXPECT_EQ(problem(body("0 0 0\n1 0 0\n0 1e400 0\n3 0 1 2\n")),
+            "m.ply:12: vertex 2: inf is not finite, or was beyond single precision");
   EXPECT_EQ(problem(body("0 0 0\n1 0 0\n0 1,5 0\n3 0 1 2\n")),
             "m.ply:12: vertex 2: '1,5' is not a number of the kind that stands here");
   EXPECT_EQ(problem(body(three + "3 0 1 3\n")), "m.ply:13: face 0: index 3 is not one of 3 vertices");

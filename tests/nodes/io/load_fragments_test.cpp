@@ -145,7 +145,8 @@ TEST(LoadFragments, SaysWhatIsWrongWithAFile) {
   const auto problem = [&](const std::string& file, const std::string& where) {
     return test::run_error(nodes::io_load_fragments(), {{"file", file}}, {}, where);
   };
-  EXPECT_EQ(problem("card.png", data).first, "malformed_file");
+  EXPECT_EQ(problem("card.png", data).first, "not_deep");
+  EXPECT_EQ(problem(folder.write("text.exr", "no EXR file"), folder.path()).first, "malformed_file");
   EXPECT_EQ(problem("nothing.exr", data).first, "cannot_read_file");
   EXPECT_EQ(test::run_error(nodes::io_load_fragments(), nlohmann::json::object()).first, "no_file");
   const std::string whole = bytes_of_file(saved(lists(), folder));
