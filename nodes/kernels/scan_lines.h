@@ -59,8 +59,8 @@ class Scanner {
   struct Face {
     kernels::ScreenTriangle<R> triangle;
     std::uint32_t index, origin;
-    R band;
-    int first, last;  // rows
+    PixelRect box;        // pixels that it may cover
+    mutable R band = -1;  // of its depth, found when two spans are first compared: see band_of
   };
   struct Span {
     const Face* face;
@@ -75,7 +75,10 @@ class Scanner {
   };
 
   std::vector<Face> faces_of(PixelRect rect) const;
-  bool cross(const Face& f, const Line& line, int x0, int x1, Span& out) const;
+  std::vector<const Face*> by_first_row(const std::vector<Face>& faces, PixelRect rect) const;
+  R band_of(const Face& f) const;
+  bool cross(const Face& f, const Line& line, Span& out) const;
+  bool cross_narrow(const Face& f, const Line& line, Span& out) const;
   void sweep(std::vector<Span>& spans, const Line& line, const Watch& watch) const;
   void decide(std::vector<const Face*>& active, std::size_t from, int begin, int end, const Line& line,
               Segment& seen, const Watch& watch) const;
@@ -104,42 +107,59 @@ inline std::int64_t floor_div(std::int64_t a, std::int64_t b) {
 
 }  // namespace detail
 
-// The edge table of a rectangle: its faces by their first row.
+// The faces of a rectangle, by their number.
 template <std::floating_point R>
 auto Scanner<R>::faces_of(PixelRect rect) const -> std::vector<Face> {
-  std::vector<std::pair<std::uint32_t, std::pair<int, int>>> rows;
+  std::vector<std::pair<std::uint32_t, PixelRect>> parts;
   kernels::each_bin_of(bins_, rect,
                        [&](PixelRect part, glm::ivec2 corner, std::span<const kernels::BinEntry> entries) {
-                         for (const kernels::BinEntry& e : entries) {
-                           const PixelRect box = kernels::box_in(part, corner, e);
-                           if (!box.empty()) rows.push_back({e.face, {box.y0, box.y1 - 1}});
-                         }
+                         for (const kernels::BinEntry& e : entries)
+                           if (const PixelRect box = kernels::box_in(part, corner, e); !box.empty())
+                             parts.emplace_back(e.face, box);
                        });
-  std::sort(rows.begin(), rows.end());
+  std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Face> faces;
-  for (const auto& [index, y] : rows) {
+  faces.reserve(parts.size());
+  for (const auto& [index, box] : parts) {
     if (!faces.empty() && faces.back().index == index) {
-      faces.back().first = std::min(faces.back().first, y.first);
-      faces.back().last = std::max(faces.back().last, y.second);
-      continue;
+      PixelRect& all = faces.back().box;
+      all = {std::min(all.x0, box.x0), std::min(all.y0, box.y0), std::max(all.x1, box.x1),
+             std::max(all.y1, box.y1)};
+    } else if (const auto t = kernels::screen_triangle(scene_.mesh, index, scene_.sign())) {
+      faces.push_back({*t, index, scene_.mesh.origin.empty() ? index : scene_.mesh.origin[index], box});
     }
-    const auto t = kernels::screen_triangle(scene_.mesh, index, scene_.sign());
-    if (!t) continue;
-    const auto f = kernels::screen_face(scene_.mesh, index, scene_.sign());
-    faces.push_back({*t, index, scene_.mesh.origin.empty() ? index : scene_.mesh.origin[index],
-                     static_cast<R>(f.depth.band * (1 + 0x1p-20)), y.first, y.second});
   }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    return std::pair(a.first, a.index) < std::pair(b.first, b.index);
-  });
   return faces;
 }
 
-// The pixels of [x0, x1) on the line whose samples the face covers: where all three edge functions, each linear
-// along the line and exact in whole numbers, are not negative.
+// The edge table: those that begin in one row stand together, in the order of their numbers.
 template <std::floating_point R>
-bool Scanner<R>::cross(const Face& f, const Line& line, int x0, int x1, Span& out) const {
-  std::int64_t begin = x0, end = x1;
+auto Scanner<R>::by_first_row(const std::vector<Face>& faces, PixelRect rect) const
+    -> std::vector<const Face*> {
+  std::vector<std::size_t> at(static_cast<std::size_t>(rect.y1 - rect.y0) + 1, 0);
+  const auto row = [&](const Face& f) { return static_cast<std::size_t>(f.box.y0 - rect.y0); };
+  for (const Face& f : faces) ++at[row(f) + 1];
+  for (std::size_t y = 1; y < at.size(); ++y) at[y] += at[y - 1];
+  std::vector<const Face*> order(faces.size());
+  for (const Face& f : faces) order[at[row(f)]++] = &f;
+  return order;
+}
+
+template <std::floating_point R>
+R Scanner<R>::band_of(const Face& f) const {
+  if (f.band < 0)
+    f.band =
+        static_cast<R>(kernels::screen_face(scene_.mesh, f.index, scene_.sign()).depth.band * (1 + 0x1p-20));
+  return f.band;
+}
+
+// The pixels on the line whose samples the face covers: where all three edge functions, each linear along the line
+// and exact in whole numbers, are not negative. Narrow faces are tried pixel by pixel: a division is dearer.
+template <std::floating_point R>
+bool Scanner<R>::cross(const Face& f, const Line& line, Span& out) const {
+  constexpr int narrow = 4;
+  if (f.box.x1 - f.box.x0 <= narrow) return cross_narrow(f, line, out);
+  std::int64_t begin = f.box.x0, end = f.box.x1;
   for (const kernels::Edge& e : f.triangle.edge) {
     const std::int64_t at0 = e.at_pixel(0, line.y) + e.at_offset(line.x, line.dy);
     const std::int64_t slope = std::int64_t{e.a} * kernels::corner_unit;
@@ -154,6 +174,20 @@ bool Scanner<R>::cross(const Face& f, const Line& line, int x0, int x1, Span& ou
   begin += (line.phase - begin % line.period + line.period) % line.period;
   out = {&f, static_cast<int>(begin), static_cast<int>(end)};
   return begin < end;
+}
+
+template <std::floating_point R>
+bool Scanner<R>::cross_narrow(const Face& f, const Line& line, Span& out) const {
+  const auto covers = [&](int x) {
+    for (const kernels::Edge& e : f.triangle.edge)
+      if (!kernels::Edge::covers(e.at_pixel(x, line.y), e.at_offset(line.x, line.dy))) return false;
+    return true;
+  };
+  int x = f.box.x0 + (line.phase - f.box.x0 % line.period + line.period) % line.period;
+  while (x < f.box.x1 && !covers(x)) x += line.period;
+  out = {&f, x, x};
+  for (; x < f.box.x1 && covers(x); x += line.period) out.end = x + 1;
+  return out.begin < out.end;
 }
 
 template <std::floating_point R>
@@ -180,13 +214,19 @@ void Scanner<R>::decide(std::vector<const Face*>& active, std::size_t from, int 
     }
     return std::pair(best, z);
   };
+  constexpr int brief = 4;  // pixels: to try each of them is as dear as both ends twice
+  if (pixels <= brief) {
+    for (int x = begin; x < end; x += line.period) show(*nearest_at(x).first, x, x + 1, line);
+    return;
+  }
   const auto [best, z_begin] = nearest_at(begin);
-  if (pixels == 1) return show(*best, begin, end, line);
   const auto [at_last, z_last] = nearest_at(last);
   const std::size_t rivals = active.size();
   for (std::size_t i = from; i < rivals; ++i) {
     const Face* f = active[i];
-    const auto clear = [&, best = best](R z, int x) { return depth(*f, x, line) - z > f->band + best->band; };
+    const auto clear = [&, best = best](R z, int x) {
+      return depth(*f, x, line) - z > band_of(*f) + band_of(*best);
+    };
     if (f != best && !(clear(z_begin, begin) && clear(depth(*best, last, line), last))) active.push_back(f);
   }
   if (active.size() == rivals && best == at_last) return show(*best, begin, end, line);
@@ -234,13 +274,15 @@ void Scanner<R>::sweep(std::vector<Span>& spans, const Line& line, const Watch& 
 template <std::floating_point R>
 void Scanner<R>::fill(PixelRect rect, PlaneView<std::uint32_t> id, PlaneView<R> z, const Watch& watch) const {
   const std::vector<Face> faces = faces_of(rect);
+  const std::vector<const Face*> edge_table = by_first_row(faces, rect);
   const kernels::SamplePositions& pattern = scene_.pattern;
   std::vector<const Face*> active;
   std::vector<Span> spans;
   std::size_t next = 0;
   for (int y = rect.y0; y < rect.y1; ++y) {
-    for (; next < faces.size() && faces[next].first <= y; ++next) active.push_back(&faces[next]);
-    std::erase_if(active, [&](const Face* f) { return f->last < y; });
+    for (; next < edge_table.size() && edge_table[next]->box.y0 <= y; ++next)
+      active.push_back(edge_table[next]);
+    std::erase_if(active, [&](const Face* f) { return f->box.y1 <= y; });
     for (int s = 0; s < pattern.samples; ++s) {
       std::uint32_t* id_row = id.row(s, y - rect.y0);
       R* z_row = z.row(s, y - rect.y0);
@@ -252,7 +294,7 @@ void Scanner<R>::fill(PixelRect rect, PlaneView<std::uint32_t> id, PlaneView<R> 
             s, y, phase, pattern.period, pattern.x[i], pattern.y[i], id_row - rect.x0, z_row - rect.x0};
         spans.clear();
         for (const Face* f : active)
-          if (Span span; cross(*f, line, rect.x0, rect.x1, span)) spans.push_back(span);
+          if (Span span; cross(*f, line, span)) spans.push_back(span);
         if (watch.counts != nullptr) {
           ++watch.counts->lines;
           watch.counts->edges += 3 * active.size();
