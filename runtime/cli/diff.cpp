@@ -57,6 +57,9 @@ int diff(const Arguments& args, bool json) {
   std::vector<std::string> names;
   for (const MetricBound& b : bounds) names.push_back(b.metric);
   const Measured m = measure_files(args, names);
+  if (m.difference.values == 0 && m.difference.mismatch.empty())
+    throw NodeError("not_comparable",
+                    fmt::format("{} and {} hold no values: nothing can be compared", args.a, args.b));
   Json out = to_json(m), failed = Json::array();
   std::string text = text_of(m);
   for (const MetricBound& bound : broken(m, bounds)) {

@@ -161,6 +161,13 @@ TEST(CliDiff, ATableIsComparedWithATable) {
   }
 }
 
+TEST(CliDiff, NothingIsNotTheSameAsNothing) {
+  const TempFolder folder;
+  const auto r = frustum({"diff", folder.write("a.csv", ""), folder.write("b.csv", "")});
+  EXPECT_EQ(r.code, 2) << r.out;
+  EXPECT_THAT(r.err, AllOf(HasSubstr("error[not_comparable]"), HasSubstr("hold no values")));
+}
+
 // ----- plan
 
 // The plan makes the geometry, so the frame of every pass is known: what it says is near to what a run has.

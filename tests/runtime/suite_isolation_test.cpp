@@ -45,6 +45,18 @@ TEST(SuiteIsolation, ACrashAndAHangAreResultsAndEverythingElsePasses) {
     EXPECT_EQ(r[i].verdict, CaseVerdict::pass) << r[i].id << testing::PrintToString(r[i].failures);
 }
 
+// Whoever is quicker, the case or what would end it.
+TEST(SuiteIsolation, ACaseThatEndsLateIsLate) {
+  if (test::done_in_a_fresh_process()) return;
+  const test::SuiteFolder folder;
+  std::string cases;
+  for (int i = 0; i < 20; ++i)
+    cases += (i == 0 ? "" : ",") + act("late " + std::to_string(i), "nothing", R"(, "timeout": 1e-6)");
+  SuiteOptions options;
+  options.jobs = 2;
+  for (const CaseResult& r : folder.run(cases, options)) EXPECT_EQ(r.verdict, CaseVerdict::timeout) << r.id;
+}
+
 TEST(SuiteIsolation, GivesTheResultsOfOneProcess) {
   if (test::done_in_a_fresh_process()) return;
   const test::SuiteFolder folder;

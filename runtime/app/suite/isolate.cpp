@@ -132,7 +132,10 @@ struct IsolatedProcesses::Process {
                     .how = {},
                     .said = content(said, tail_bytes),
                     .time = Clock::now() - began};
-    if (info.si_code == CLD_EXITED && info.si_status == 0)
+    const bool ended = info.si_code == CLD_EXITED && info.si_status == 0;
+    if (ended && Clock::now() > deadline)  // before it could be killed
+      end.kind = IsolatedEnd::Kind::timeout;
+    else if (ended)
       end.result = content(result, std::numeric_limits<off_t>::max());
     else
       end.kind = killed ? IsolatedEnd::Kind::timeout : IsolatedEnd::Kind::crash, end.how = how_it_ended(info);
