@@ -17,7 +17,7 @@ void read(std::string_view input) {
   if (cut != std::string_view::npos) folder.write("m.mtl", input.substr(cut + marker.size()));
   const std::string_view text = input.substr(0, cut);
   const FilePath file{"input.obj", folder.file("input.obj")};
-  read_mesh(read_obj, text, file);
+  read_mesh(read_obj, text, file, "m.mtl");
   visit_obj_files(text, file, [](const FilePath& beside) {
     require(beside.resolved.starts_with(folder.path()),
             "a file outside the folder would be read: " + beside.resolved);
