@@ -8,10 +8,9 @@
 
 namespace frustum {
 
-// A PNG file (ISO/IEC 15948) of 8-bit RGB marked as sRGB, not interlaced. Each row is stored as differences from the
-// one above it (filter 2), which suits smooth pictures and maps alike.
+// A PNG file of 8-bit RGB marked as sRGB, by libpng.
 //   rgb  height rows of width pixels of 3 bytes; both sizes from 1 to 2^15
-// Throws WorldError where no memory is left. Cost: linear, some 40 ns a pixel.
+// Throws WorldError where no memory is left. Cost: linear.
 std::string png_file(int width, int height, std::span<const std::uint8_t> rgb);
 
 }  // namespace frustum
