@@ -4,14 +4,12 @@
 #include "nodes/all_nodes.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/mesh.h"
-#include "runtime/graph/load.h"
-#include "runtime/graph/run.h"
+#include "tests/bench/graph_of.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include <chrono>
-#include <stdexcept>
 
 namespace frustum {
 namespace {
@@ -83,19 +81,12 @@ Graph graph_of(const Registry& registry, double opacity, std::string_view visibi
     "lit":    {{ "type": "shade.surface", "in": {{ "points": "points", "mesh": "screen", "material": "glass",
                 "lights": ["key", "fill"], "camera": "camera" }} }}{} }} }})",
                                        width, height, opacity, visibility, last);
-  const auto loaded = load_graph_text(text, "abuffer.json", registry);
-  if (!loaded.graph) throw std::runtime_error(to_text(loaded.problems));
-  return *loaded.graph;
+  return bench::graph_of(text, registry);
 }
 
 double seconds_of(const Graph& graph, Buffer& image) {
-  RunOptions options;
-  const PortRef last{graph.nodes.size() - 1, 0};
-  options.demand.ports.push_back(last);
   const auto start = std::chrono::steady_clock::now();
-  const RunResult result = run_graph(graph, options);
-  if (result.end != RunResult::End::done) throw std::runtime_error(to_text(result.problems));
-  image = result.buffers.at(last);
+  image = bench::result_of(graph);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

@@ -61,7 +61,8 @@ std::string textured_sheet() {
                            "project.perspective", 4, "mitchell", "phong", "[0, 1.4, 0.6]");
   const std::string plain = R"("points": "points", "mesh": "screen" } },
     "lit")";
-  return text.replace(text.find(plain), plain.size(), R"("points": "points", "mesh": "screen", "texture": "texture" } },
+  return text.replace(text.find(plain), plain.size(),
+                      R"("points": "points", "mesh": "screen", "texture": "texture" } },
     "lit")");
 }
 

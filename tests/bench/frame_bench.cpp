@@ -9,9 +9,8 @@
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/texture.h"
-#include "runtime/graph/load.h"
-#include "runtime/graph/run.h"
 #include "tests/bench/frame_scenes.h"
+#include "tests/bench/graph_of.h"
 #include "tests/bench/llvmpipe.h"
 
 #include <benchmark/benchmark.h>
@@ -25,7 +24,8 @@
 namespace frustum {
 namespace {
 
-using bench::far_z, bench::fov_y_deg, bench::height, bench::near_z, bench::width;
+using bench::far_z, bench::fov_y_deg, bench::graph_of, bench::height, bench::near_z, bench::result_of,
+    bench::width;
 constexpr int texture_edge = 1024;
 constexpr glm::dvec3 light_direction{-0.4, -0.7, -0.6};
 
@@ -54,22 +54,6 @@ struct Scene {
 };
 
 Board board(const Inputs&, const Params&, Context&) { return {make_board()}; }
-
-Graph graph_of(const std::string& text, const Registry& registry) {
-  const auto loaded = load_graph_text(text, "frame.json", registry);
-  if (!loaded.graph) throw std::runtime_error(to_text(loaded.problems));
-  return *loaded.graph;
-}
-
-// The first output of the last node.
-Buffer result_of(const Graph& graph) {
-  const PortRef last{graph.nodes.size() - 1, 0};
-  RunOptions options;
-  options.demand.ports.push_back(last);
-  const RunResult result = run_graph(graph, options);
-  if (result.end != RunResult::End::done) throw std::runtime_error(to_text(result.problems));
-  return result.buffers.at(last);
-}
 
 // Made once: no frame holds the making of the pyramid.
 Ref<Texture> kept_texture() {

@@ -3,9 +3,8 @@
 #include "nodes/all_nodes.h"
 #include "nodes/kernels/space_partition.h"
 #include "runtime/buffers/screen_view.h"
-#include "runtime/graph/load.h"
-#include "runtime/graph/run.h"
 #include "tests/bench/frame_scenes.h"
+#include "tests/bench/graph_of.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -16,7 +15,7 @@
 namespace frustum {
 namespace {
 
-using bench::height, bench::width;
+using bench::graph_of, bench::height, bench::result_of, bench::width;
 
 struct Inputs {};
 struct Params {};
@@ -30,21 +29,6 @@ Registry nodes_and(Space space) {
   std::vector<NodeType> types = all_node_types();
   types.push_back(node("bench.scene", scene).output("mesh", &Scene::mesh, "A scene.", {.space = space}));
   return Registry(std::move(types));
-}
-
-Graph graph_of(const std::string& text, const Registry& registry) {
-  const auto loaded = load_graph_text(text, "visibility.json", registry);
-  if (!loaded.graph) throw std::runtime_error(to_text(loaded.problems));
-  return *loaded.graph;
-}
-
-Buffer result_of(const Graph& graph) {
-  const PortRef last{graph.nodes.size() - 1, 0};
-  RunOptions options;
-  options.demand.ports.push_back(last);
-  const RunResult result = run_graph(graph, options);
-  if (result.end != RunResult::End::done) throw std::runtime_error(to_text(result.problems));
-  return result.buffers.at(last);
 }
 
 Ref<Mesh> on_screen(const bench::FrameScene& of) {
