@@ -187,11 +187,24 @@ HWY_INLINE V pyramid_level(const UvRows<float>& p, const TexelLevel& base, int l
 // Where one level is read, lane by lane: the first texel of the upper and of the lower row, how far off the second of
 // either is, and the fractions between them.
 struct Taps {
-  const float* row[2][max_lanes];
-  HWY_ALIGN std::int32_t step[max_lanes];  // in numbers, not texels
-  bool adjacent;                           // the second texels follow the first ones in every lane
+  HWY_ALIGN std::int64_t row[2][max_lanes];  // addresses
+  HWY_ALIGN std::int32_t step[max_lanes];    // in numbers, not texels
+  bool adjacent;                             // the second texels follow the first ones in every lane
   V fx, fy;
 };
+
+HWY_INLINE const float* texel_at(std::int64_t address) { return reinterpret_cast<const float*>(address); }
+
+// The addresses of the numbers that stand `offset` after `from`.
+HWY_INLINE void find_rows(const float* from, Vi offset, std::int64_t* to) {
+  const hn::RepartitionToWide<Di> dw;
+  const auto at = hn::Set(dw, reinterpret_cast<std::int64_t>(from));
+  const auto half = [&](auto part, std::int64_t* address) HWY_ATTR {
+    hn::Store(hn::Add(at, hn::ShiftLeft<2>(hn::PromoteTo(dw, part))), dw, address);
+  };
+  half(hn::LowerHalf(offset), to);
+  half(hn::UpperHalf(hn::Half<Di>(), offset), to + hn::Lanes(dw));
+}
 
 // Colours stand in vectors as they do in memory, four numbers a point: vector `g` of a group holds the points
 // from g * blocks on.
@@ -206,11 +219,11 @@ HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
   return hn::Combine(D(), hn::Combine(dh, hn::LoadU(d4, from[3]), hn::LoadU(d4, from[2])),
                      hn::Combine(dh, hn::LoadU(d4, from[1]), hn::LoadU(d4, from[0])));
 }
-HWY_INLINE void load_pairs(const float* const* from, V& first, V& second) {
+HWY_INLINE void load_pairs(const std::int64_t* from, V& first, V& second) {
   const D d;
   const hn::Half<D> dh;
-  const V even = hn::Combine(d, hn::LoadU(dh, from[2]), hn::LoadU(dh, from[0]));
-  const V odd = hn::Combine(d, hn::LoadU(dh, from[3]), hn::LoadU(dh, from[1]));
+  const V even = hn::Combine(d, hn::LoadU(dh, texel_at(from[2])), hn::LoadU(dh, texel_at(from[0])));
+  const V odd = hn::Combine(d, hn::LoadU(dh, texel_at(from[3])), hn::LoadU(dh, texel_at(from[1])));
   first = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(odd), even);
   second = hn::OddEvenBlocks(odd, hn::SwapAdjacentBlocks(even));
 }
@@ -219,16 +232,16 @@ HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
   const D4 d4;
   return hn::Combine(D(), hn::LoadU(d4, from[1]), hn::LoadU(d4, from[0]));
 }
-HWY_INLINE void load_pairs(const float* const* from, V& first, V& second) {
+HWY_INLINE void load_pairs(const std::int64_t* from, V& first, V& second) {
   const D d;
-  const V left = hn::LoadU(d, from[0]), right = hn::LoadU(d, from[1]);
+  const V left = hn::LoadU(d, texel_at(from[0])), right = hn::LoadU(d, texel_at(from[1]));
   first = hn::ConcatLowerLower(d, right, left);
   second = hn::ConcatUpperUpper(d, right, left);
 }
 #else
 HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) { return hn::LoadU(D(), from[0]); }
-HWY_INLINE void load_pairs(const float* const* from, V& first, V& second) {
-  first = hn::LoadU(D(), from[0]), second = hn::LoadU(D(), from[0] + 4);
+HWY_INLINE void load_pairs(const std::int64_t* from, V& first, V& second) {
+  first = hn::LoadU(D(), texel_at(from[0])), second = hn::LoadU(D(), texel_at(from[0]) + 4);
 }
 #endif
 
@@ -248,19 +261,21 @@ HWY_INLINE V spread(V of, std::size_t g) {
 HWY_INLINE V fetch(const Taps& taps, std::size_t g) {
   V first[2], second[2];
   for (std::size_t r = 0; r < 2; ++r) {
-    const float* const* from = taps.row[r] + g * blocks();
+    const std::int64_t* from = taps.row[r] + g * blocks();
     if (taps.adjacent) {
       load_pairs(from, first[r], second[r]);
       continue;
     }
     const float *left[max_lanes / 4], *right[max_lanes / 4];
     for (std::size_t b = 0; b < blocks(); ++b)
-      left[b] = from[b], right[b] = from[b] + taps.step[g * blocks() + b];
+      left[b] = texel_at(from[b]), right[b] = left[b] + taps.step[g * blocks() + b];
     first[r] = load_blocks(left), second[r] = load_blocks(right);
   }
   const V fx = spread(taps.fx, g);
   return blend(blend(first[0], second[0], fx), blend(first[1], second[1], fx), spread(taps.fy, g));
 }
+
+constexpr float cached_texels = 128 * 128;  // 256 KB: a quarter of a core's second cache
 
 // What is read of the levels of a pyramid, level by level; one more than there are, which is the last again.
 struct LevelTable {
@@ -288,22 +303,42 @@ struct LevelTable {
     return hn::IfThenElse(hn::RebindMask(d, hn::Lt(level, hn::Set(di, lanes))), low, high);
   }
 
-  HWY_INLINE void find_taps(const TexelPyramid& p, V s, V t, Vi level, Taps& taps) const {
+  // Each lane's in a level of its own.
+  void find_mixed_rows(Vi level, Vi upper, Vi lower, Taps& taps) const {
     const Di di;
-    const V columns = pick(width, level);
-    const Pair x = texel_pair(s, columns, p.wrap_u), y = texel_pair(t, pick(height, level), p.wrap_v);
+    HWY_ALIGN std::int32_t levels[max_lanes], offset[2][max_lanes];
+    hn::Store(level, di, levels);
+    hn::Store(upper, di, offset[0]);
+    hn::Store(lower, di, offset[1]);
+    for (std::size_t r = 0; r < 2; ++r)
+      for (std::size_t lane = 0; lane < hn::Lanes(di); ++lane)
+        taps.row[r][lane] = reinterpret_cast<std::int64_t>(rgba[levels[lane]] + offset[r][lane]);
+  }
+
+  HWY_INLINE void find_taps(const TexelPyramid& p, V s, V t, Vi level, Taps& taps) const {
+    const D d;
+    const Di di;
+    // Points beside one another mostly read the same level.
+    const auto one = static_cast<std::size_t>(hn::GetLane(level));
+    const bool same = hn::AllTrue(di, hn::Eq(level, hn::Set(di, hn::GetLane(level))));
+    const V columns = same ? hn::Set(d, width[one]) : pick(width, level);
+    const V rows = same ? hn::Set(d, height[one]) : pick(height, level);
+    const Pair x = texel_pair(s, columns, p.wrap_u), y = texel_pair(t, rows, p.wrap_v);
     const Vi stride = hn::ConvertTo(di, columns), step = hn::Sub(x.second, x.first);
     const auto offset = [&](Vi row)
                             HWY_ATTR { return hn::ShiftLeft<2>(hn::Add(hn::Mul(row, stride), x.first)); };
-    HWY_ALIGN std::int32_t levels[max_lanes], upper[max_lanes], lower[max_lanes];
-    hn::Store(level, di, levels);
-    hn::Store(offset(y.first), di, upper);
-    hn::Store(offset(y.second), di, lower);
-    for (std::size_t lane = 0; lane < hn::Lanes(di); ++lane) {
-      taps.row[0][lane] = rgba[levels[lane]] + upper[lane];
-      taps.row[1][lane] = rgba[levels[lane]] + lower[lane];
-      hwy::Prefetch(taps.row[0][lane]);
-      hwy::Prefetch(taps.row[1][lane]);
+    if (same) {
+      find_rows(rgba[one], offset(y.first), taps.row[0]);
+      find_rows(rgba[one], offset(y.second), taps.row[1]);
+    } else {
+      find_mixed_rows(level, offset(y.first), offset(y.second), taps);
+    }
+    // A small level stays in the cache, and along one row of a large one the processor fetches ahead by itself.
+    const bool known = same && (width[one] * height[one] <= cached_texels ||
+                                hn::AllTrue(di, hn::Eq(y.first, hn::Set(di, hn::GetLane(y.first)))));
+    for (std::size_t lane = 0; lane < hn::Lanes(di) && !known; ++lane) {
+      hwy::Prefetch(texel_at(taps.row[0][lane]));
+      hwy::Prefetch(texel_at(taps.row[1][lane]));
     }
     hn::Store(hn::ShiftLeft<2>(step), di, taps.step);
     taps.adjacent = hn::AllTrue(di, hn::Eq(step, hn::Set(di, 1)));
