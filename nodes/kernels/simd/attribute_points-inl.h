@@ -33,9 +33,8 @@ using Doubles = hn::Vec<Double>;
 // A row is worked in stretches of this many pixels, so that what passes between the steps stays in the first
 // cache.
 constexpr int stretch = 64;
-static_assert(stretch % hn::MaxLanes(Float()) == 0 && stretch <= 32 * 4);
-
-using Quads = float[stretch][4];
+constexpr std::size_t max_lanes = hn::MaxLanes(Float());
+static_assert(stretch % max_lanes == 0 && stretch <= 32 * 4);
 
 // The corners of the faces of some points, in samples' units, and the edges opposite to them.
 struct LaneEdges {
@@ -56,29 +55,28 @@ struct LaneEdges {
   }
 };
 
+// The faces that a vector of points sees, in the order of its lanes, and which lanes see each. Points that see nothing
+// go with the first.
+struct LaneFaces {
+  int count;
+  std::uint32_t face[max_lanes];
+  glm::uvec3 vertex[max_lanes];
+  hn::Mask<Float> lanes[max_lanes];
+};
+
 // One stretch of one row: which faces are seen and the weights of their corners.
 struct Points {
-  HWY_ALIGN std::uint32_t face[stretch];       // no_face: nothing is seen
-  HWY_ALIGN std::uint32_t held[stretch];       // the face, or a neighbour's where nothing is seen
-  HWY_ALIGN std::uint32_t vertex[3][stretch];  // of the held face
+  HWY_ALIGN std::uint32_t face[stretch];  // no_face: nothing is seen
   HWY_ALIGN std::int32_t base[stretch];
   HWY_ALIGN float u[stretch], v[stretch], u_dx[stretch], v_dx[stretch], u_dy[stretch], v_dy[stretch],
       w[stretch];
   HWY_ALIGN std::int32_t offset_x[stretch], offset_y[stretch];
-  HWY_ALIGN Quads corner[3];  // screen corners, then attributes of the corners
-  // Of a vector of points that see one face or two: these, one of them twice, and the lanes that see the first.
-  struct Pair {
-    bool holds;
-    std::uint32_t face[2];
-    glm::uvec3 vertex[2];
-    hn::Mask<Float> first;
-  };
-  Pair pair[stretch / hn::MaxLanes(Float())];
+  LaneFaces faces[stretch / max_lanes];
   // Of the face that a vector of points saw alone the last time: the next one, or the next row, often sees the same.
   std::uint32_t face_of_edges;
   LaneEdges edges;
 
-  HWY_INLINE Pair& pair_from(int i) { return pair[i / static_cast<int>(hn::Lanes(Float()))]; }
+  HWY_INLINE LaneFaces& faces_from(int i) { return faces[i / static_cast<int>(hn::Lanes(Float()))]; }
 };
 
 struct Stretch {
@@ -122,43 +120,38 @@ HWY_INLINE bool load_faces(const std::uint32_t* ids, int count, int i, Points& p
   return !hn::AllFalse(Float(), seen_from(p, i));
 }
 
-// Finds whether the points from i on see two faces at most.
-HWY_INLINE bool find_pair(const AttributeScene<float>& scene, int i, Points& p) {
+// Finds the faces of the points from i on, one of which sees one at least.
+HWY_INLINE void find_faces(const AttributeScene<float>& scene, int i, Points& p) {
   const hn::RebindToUnsigned<Float> du;
-  const auto face = hn::Load(du, p.face + i), none = hn::Set(du, no_face);
-  const auto first_of = [&](auto mask) HWY_ATTR {
-    return p.face[i + static_cast<int>(hn::FindKnownFirstTrue(du, mask))];
-  };
-  Points::Pair& pair = p.pair_from(i);
-  const auto seen = hn::Ne(face, none);
-  pair.face[0] = pair.face[1] = first_of(seen);
-  const auto first = hn::Eq(face, hn::Set(du, pair.face[0])), others = hn::AndNot(first, seen);
-  pair.first = hn::RebindMask(Float(), first);
-  if (!hn::AllFalse(du, others)) pair.face[1] = first_of(others);
-  pair.holds = hn::AllFalse(du, hn::And(others, hn::Ne(face, hn::Set(du, pair.face[1]))));
-  for (int k = 0; k < 2 && pair.holds; ++k) pair.vertex[k] = scene.mesh.face[pair.face[k]];
-  return pair.holds;
+  const auto face = hn::Load(du, p.face + i);
+  LaneFaces& faces = p.faces_from(i);
+  faces.count = 0;
+  for (auto left = hn::Ne(face, hn::Set(du, no_face)); !hn::AllFalse(du, left); ++faces.count) {
+    const std::uint32_t next = p.face[i + static_cast<int>(hn::FindKnownFirstTrue(du, left))];
+    const auto same = hn::Eq(face, hn::Set(du, next));
+    left = hn::AndNot(same, left);
+    faces.face[faces.count] = next;
+    faces.vertex[faces.count] = scene.mesh.face[next];
+    faces.lanes[faces.count] = hn::RebindMask(Float(), same);
+  }
 }
 
-// Loads the screen corners of the points from i on, some of which see a face. The others hold a face, too, so
-// that what is loaded for them exists.
-void load_points(const AttributeScene<float>& scene, int i, Points& p) {
-  if (find_pair(scene, i, p)) return;
-  const int end = i + static_cast<int>(hn::Lanes(Float()));
-  std::uint32_t held = p.pair_from(i).face[0];
-  glm::uvec3 vertex = scene.mesh.face[held];
-  for (; i < end; ++i) {
-    const bool seen = p.face[i] != no_face;
-    if (seen && p.face[i] != held) {
-      held = p.face[i];
-      vertex = scene.mesh.face[held];
-    }
-    p.held[i] = held;
-    for (int k = 0; k < 3; ++k) {
-      p.vertex[k][i] = vertex[k];
-      std::memcpy(p.corner[k][i], &scene.mesh.position[vertex[k]].x, sizeof(p.corner[k][i]));
-    }
+// Numbers of the corners of faces, by lane: numbers(f, k) points to those of corner k of the f-th face. A broadcast under
+// a mask is one instruction on some targets; copying them lane by lane took twice as long even where every lane sees
+// a face of its own.
+template <int width, class Numbers>
+HWY_INLINE void load_corners(const LaneFaces& faces, Floats (&to)[3][width], const Numbers& numbers) {
+  const Float df;
+  for (int k = 0; k < 3; ++k) {
+    const float* one = numbers(0, k);
+    for (int c = 0; c < width; ++c) to[k][c] = hn::Set(df, one[c]);
   }
+  for (int f = 1; f < faces.count; ++f)
+    for (int k = 0; k < 3; ++k) {
+      const float* one = numbers(f, k);
+      for (int c = 0; c < width; ++c)
+        to[k][c] = hn::IfThenElse(faces.lanes[f], hn::Set(df, one[c]), to[k][c]);
+    }
 }
 
 // Loads the offsets of the samples of the points from i on. Where all pixels have the same samples, they are
@@ -178,24 +171,16 @@ struct GridCorners {
   hn::Vec<hn::RebindToSigned<Float>> x[3], y[3];
   Floats per_w[3];
 
-  HWY_INLINE GridCorners(const AttributeScene<float>& scene, Points& p, int i) {
+  HWY_INLINE GridCorners(const AttributeScene<float>& scene, const LaneFaces& faces) {
     const Float df;
     const auto scale = hn::Set(df, static_cast<float>(1 << scene.mesh.corner_bits));
     const int shift = corner_bits - scene.mesh.corner_bits;
-    const Points::Pair& pair = p.pair_from(i);
+    Floats corner[3][4];
+    load_corners(faces, corner, [&](int f, int k) { return &scene.mesh.position[faces.vertex[f][k]].x; });
     for (int k = 0; k < 3; ++k) {
-      Floats px, py, pz;
-      if (pair.holds) {
-        const glm::vec4 &a = scene.mesh.position[pair.vertex[0][k]],
-                        &b = scene.mesh.position[pair.vertex[1][k]];
-        px = hn::IfThenElse(pair.first, hn::Set(df, a.x), hn::Set(df, b.x));
-        py = hn::IfThenElse(pair.first, hn::Set(df, a.y), hn::Set(df, b.y));
-        per_w[k] = hn::IfThenElse(pair.first, hn::Set(df, a.w), hn::Set(df, b.w));
-      } else {
-        hn::LoadInterleaved4(df, p.corner[k][i], px, py, pz, per_w[k]);
-      }
-      x[k] = hn::ShiftLeftSame(hn::NearestInt(hn::Mul(px, scale)), shift);
-      y[k] = hn::ShiftLeftSame(hn::NearestInt(hn::Mul(py, scale)), shift);
+      x[k] = hn::ShiftLeftSame(hn::NearestInt(hn::Mul(corner[k][0], scale)), shift);
+      y[k] = hn::ShiftLeftSame(hn::NearestInt(hn::Mul(corner[k][1], scale)), shift);
+      per_w[k] = corner[k][3];
     }
   }
 

@@ -17,23 +17,6 @@ namespace HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 namespace {
 
-// Copies the attribute of the corners of the points from i on, four numbers apart.
-template <int width>
-HWY_INLINE void load_attribute(const Attribute<float>& a, int i, Points& p) {
-  const int lanes = static_cast<int>(hn::Lanes(Float()));
-  HWY_ALIGN std::uint32_t corner_rows[hn::MaxLanes(Float())];
-  for (std::uint32_t k = 0; k < 3; ++k) {
-    const std::uint32_t* rows = p.vertex[k] + i;
-    if (a.domain == AttributeDomain::face) rows = p.held + i;
-    if (a.domain == AttributeDomain::corner) {
-      for (int l = 0; l < lanes; ++l) corner_rows[l] = 3 * p.held[i + l] + k;
-      rows = corner_rows;
-    }
-    for (int l = 0; l < lanes; ++l)
-      std::memcpy(p.corner[k][i + l], a.data + std::size_t{rows[l]} * width, sizeof(float) * width);
-  }
-}
-
 // Writes the lanes of points that are seen, and 0 in the others.
 HWY_INLINE void put(const PlaneView<float>& plane, const Stretch& at, const PixelRect& rect, int i,
                     hn::Mask<Float> seen, Floats value) {
@@ -81,24 +64,21 @@ HWY_INLINE bool one_base(const Points& p, int i) {
 }
 
 template <int width>
-void interpolate(const Attribute<float>& a, const AttributeScene<float>& scene, const Stretch& at,
-                 const PixelRect& rect, int i, Points& p) {
+void interpolate(const Attribute<float>& a, const Stretch& at, const PixelRect& rect, int i, Points& p) {
   const Float df;
-  const Points::Pair& pair = p.pair_from(i);
+  const LaneFaces& faces = p.faces_from(i);
   // With one base in all lanes the corners are turned, and no lane needs to pick.
   const bool turned = one_base(p, i);
   const int t = turned ? p.base[i] : 0, corner[3] = {t, (t + 1) % 3, (t + 2) % 3};
-  Floats all[3][4];
-  for (int k = 0; k < 3; ++k) {
-    if (pair.holds) {
-      const auto numbers = [&](int f) { return a.data + width * a.row(scene.mesh, pair.face[f], corner[k]); };
-      const float *one = numbers(0), *other = numbers(1);
-      for (std::size_t c = 0; c < width; ++c)
-        all[k][c] = hn::IfThenElse(pair.first, hn::Set(df, one[c]), hn::Set(df, other[c]));
-    } else {
-      hn::LoadInterleaved4(df, p.corner[corner[k]][i], all[k][0], all[k][1], all[k][2], all[k][3]);
-    }
-  }
+  Floats all[3][width];
+  load_corners(faces, all, [&](int f, int k) {
+    const glm::uvec3& vertex = faces.vertex[f];
+    const std::size_t row = a.domain == AttributeDomain::vertex ? vertex[corner[k]]
+                            : a.domain == AttributeDomain::corner
+                                ? std::size_t{3} * faces.face[f] + static_cast<std::size_t>(corner[k])
+                                : faces.face[f];
+    return a.data + width * row;
+  });
   const hn::RebindToSigned<Float> di;
   const auto base = hn::Load(di, p.base + i);
   const auto first = hn::RebindMask(df, hn::Eq(base, hn::Zero(di)));
@@ -142,17 +122,6 @@ HWY_INLINE void each_seen(std::uint32_t seen, Visit&& visit) {
   for (; seen != 0; seen &= seen - 1) visit(std::countr_zero(seen) * static_cast<int>(hn::Lanes(Float())));
 }
 
-template <int width>
-void interpolate_stretch(const Attribute<float>& a, const AttributeScene<float>& scene, const Stretch& at,
-                         const PixelRect& rect, std::uint32_t seen, Points& p) {
-  // All copies come before all uses: a wide load waits until the narrow stores it covers have left the store
-  // queue.
-  each_seen(seen, [&](int i) {
-    if (!p.pair_from(i).holds) load_attribute<width>(a, i, p);
-  });
-  each_seen(seen, [&](int i) { interpolate<width>(a, scene, at, rect, i, p); });
-}
-
 // Loads the faces of a stretch; returns a bit for each vector of points that sees any.
 HWY_INLINE std::uint32_t load_stretch(const std::uint32_t* ids, int count, Points& p) {
   const int lanes = static_cast<int>(hn::Lanes(Float()));
@@ -169,7 +138,7 @@ void fill_stretch(const AttributeScene<float>& scene, const AttributePlanes<floa
   for (int i = 0; i < at.count; i += lanes)
     if ((seen >> (i / lanes) & 1) == 0) fill_empty(planes, at, rect, i, std::min(i + lanes, at.count));
   each_seen(seen, [&](int i) {
-    load_points(scene, i, p);
+    find_faces(scene, i, p);
     load_offsets(scene.pattern, at, i, p);
   });
   each_seen(seen, [&](int i) {
@@ -183,28 +152,29 @@ void fill_stretch(const AttributeScene<float>& scene, const AttributePlanes<floa
         weigh<false>(scene, upper, at, middle, p);
       }
     };
-    const Points::Pair& pair = p.pair_from(i);
-    if (pair.holds && pair.face[0] == pair.face[1]) {
-      load_edges(scene, pair.face[0], p);
+    const LaneFaces& faces = p.faces_from(i);
+    if (faces.count == 1) {
+      load_edges(scene, faces.face[0], p);
       return weigh_halves(p.edges, p.edges);
     }
-    const GridCorners corners(scene, p, i);
+    const GridCorners corners(scene, faces);
     LaneEdges lower, upper;
     corners.edges_of_half<false>(scene.interpolation, lower);
     corners.edges_of_half<true>(scene.interpolation, upper);
     weigh_halves(lower, upper);
   });
   each_seen(seen, [&](int i) { put(planes.w, at, rect, i, seen_from(p, i), hn::Load(Float(), p.w + i)); });
-  for (const Attribute<float>& a : planes.attributes) {
-    if (a.width == 1)
-      interpolate_stretch<1>(a, scene, at, rect, seen, p);
-    else if (a.width == 2)
-      interpolate_stretch<2>(a, scene, at, rect, seen, p);
-    else if (a.width == 3)
-      interpolate_stretch<3>(a, scene, at, rect, seen, p);
-    else
-      interpolate_stretch<4>(a, scene, at, rect, seen, p);
-  }
+  for (const Attribute<float>& a : planes.attributes)
+    each_seen(seen, [&](int i) {
+      if (a.width == 1)
+        interpolate<1>(a, at, rect, i, p);
+      else if (a.width == 2)
+        interpolate<2>(a, at, rect, i, p);
+      else if (a.width == 3)
+        interpolate<3>(a, at, rect, i, p);
+      else
+        interpolate<4>(a, at, rect, i, p);
+    });
 }
 
 }  // namespace
