@@ -11,6 +11,7 @@ struct PixelRect {
   int x0, y0, x1, y1;
 
   bool empty() const { return x0 >= x1 || y0 >= y1; }
+  bool operator==(const PixelRect&) const = default;
 };
 inline PixelRect intersection(const PixelRect& a, const PixelRect& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};

@@ -59,6 +59,30 @@ inline PixelRect box_in(PixelRect part, glm::ivec2 corner, const BinEntry& e) {
   return intersection(part, {corner.x + e.x0, corner.y + e.y0, corner.x + e.x1 + 1, corner.y + e.y1 + 1});
 }
 
+// The pixels of `rect` outside of which no triangle has its box; some may be covered by none. Empty where all of it is.
+// Cost: O(entries of the touched bins), less where they fill them.
+inline PixelRect drawn_part(const TriangleBins& bins, PixelRect rect) {
+  PixelRect all{rect.x1, rect.y1, rect.x0, rect.y0};
+  each_bin_of(bins, rect, [&](PixelRect part, glm::ivec2 corner, std::span<const BinEntry> entries) {
+    constexpr std::size_t stride = 64;  // of entries between two looks at whether the part is full
+    PixelRect box{255, 255, -1, -1};
+    const auto within = [&] {
+      return intersection(
+          part, {corner.x + box.x0, corner.y + box.y0, corner.x + box.x1 + 1, corner.y + box.y1 + 1});
+    };
+    for (std::size_t i = 0; i < entries.size() && within() != part; i += stride)
+      for (const BinEntry& e : entries.subspan(i, std::min(stride, entries.size() - i))) {
+        box.x0 = std::min(box.x0, int{e.x0}), box.y0 = std::min(box.y0, int{e.y0});
+        box.x1 = std::max(box.x1, int{e.x1}), box.y1 = std::max(box.y1, int{e.y1});
+      }
+    const PixelRect found = within();
+    if (found.empty()) return;
+    all = {std::min(all.x0, found.x0), std::min(all.y0, found.y0), std::max(all.x1, found.x1),
+           std::max(all.y1, found.y1)};
+  });
+  return all;
+}
+
 // Draws one sample of a triangle into the pixels of `box`: keeps it where it is covered and strictly nearer
 // than what is there.
 template <std::floating_point R>

@@ -295,7 +295,8 @@ NodeType nodes::rasterize_attributes() {
       .effect(normals_name, normals, "Normals are interpolated between the corners of each face.",
               {"sample", 0.5})  // 0 to 2.0
       .output("points", &Outputs::points,
-              "id, uv and P with derivatives, N, w and other columns; 0 where nothing is seen.");
+              "id, uv and P with derivatives, N, w and other columns; 0 where nothing is seen.")
+      .blank_where(&Inputs::hits);
 }
 
 }  // namespace frustum

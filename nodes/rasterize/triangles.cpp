@@ -82,7 +82,8 @@ NodeType nodes::rasterize_triangles() {
       .effect(transparency_name, transparency, "What lies behind shines through faces that are not opaque.")
       .output("visibility", &Outputs::visibility,
               "The face and the depth at each sample; ties go to the lowest source.")
-      .output("depth", &Outputs::depth, "The depth alone; where nothing is seen, that of the far plane.");
+      .output("depth", &Outputs::depth, "The depth alone; where nothing is seen, that of the far plane.")
+      .seen(seen_faces<State>);
 }
 
 }  // namespace frustum

@@ -105,7 +105,8 @@ NodeType nodes::shade_shadow() {
               {"sample and light", 150})
       .output(
           "visibility", &Outputs::visibility,
-          "V0, V1 ..: 1 where a source of light is seen, 0 where something hides it; none where all see it.");
+          "V0, V1 ..: 1 where a source of light is seen, 0 where something hides it; none where all see it.")
+      .blank_where(&Inputs::points);
 }
 
 }  // namespace frustum

@@ -182,7 +182,8 @@ NodeType nodes::shade_shadow_map() {
       .effect(shadows_name, shadows, "Depths around every point are compared with those that each light saw.",
               {"sample and light", 40})
       .output("visibility", &Outputs::visibility,
-              "V0, V1 ..: the share of each source of light that reaches a point.");
+              "V0, V1 ..: the share of each source of light that reaches a point.")
+      .blank_where(&Inputs::points);
 }
 
 }  // namespace frustum

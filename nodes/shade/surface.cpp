@@ -493,7 +493,8 @@ NodeType nodes::shade_surface() {
       .effect(shadows_name, shadows, "Light does not reach what something else stands in front of.")
       .output("color", &Outputs::color,
               "Linear Rec.709, premultiplied; alpha is the opacity of face and albedo where a point is seen, "
-              "else 0.");
+              "else 0.")
+      .blank_where(&Inputs::points);
 }
 
 }  // namespace frustum

@@ -248,7 +248,8 @@ NodeType nodes::supersample_resolve() {
               "One value a pixel; where all samples in reach are equal, exactly that value.")
       .effect("reconstruction", reconstruction, "Samples are weighted by the filter, where they differ.",
               {"number", 2.5})  // tests/bench/effects_bench.cpp, one thread: 2.2 to 2.7
-      .reads(reads);
+      .reads(reads)
+      .blank_where(&Inputs::image);
 }
 
 }  // namespace frustum

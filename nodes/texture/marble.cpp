@@ -75,7 +75,8 @@ NodeType nodes::texture_marble() {
       .param("low", &Params::low, "Colour of the veins, linear Rec.709.", {.range = at_least(0)})
       .param("high", &Params::high, "Colour between them, linear Rec.709.", {.range = at_least(0)})
       .output("image", &Outputs::image,
-              "Colour at every sample, linear Rec.709, premultiplied; albedo for shading.");
+              "Colour at every sample, linear Rec.709, premultiplied; albedo for shading.")
+      .blank_where(&Inputs::points);
 }
 
 }  // namespace frustum

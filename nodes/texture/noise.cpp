@@ -90,7 +90,8 @@ NodeType nodes::texture_noise() {
       .param("low", &Params::low, "Colour where noise is lowest, linear Rec.709.", {.range = at_least(0)})
       .param("high", &Params::high, "Colour where noise is highest, linear Rec.709.", {.range = at_least(0)})
       .output("image", &Outputs::image,
-              "Colour at every sample, linear Rec.709, premultiplied; albedo for shading.");
+              "Colour at every sample, linear Rec.709, premultiplied; albedo for shading.")
+      .blank_where(&Inputs::points);
 }
 
 }  // namespace frustum

@@ -491,7 +491,8 @@ NodeType nodes::texture_sample() {
               "A level of the pyramid is chosen by the footprint of every point, and two blended.",
               {"sample", 2.2})
       .effect("transparency", transparency, "Colours carry the opacity of textures and vertices.")
-      .output("image", &Outputs::image, "Colour at every sample, linear Rec.709, premultiplied.");
+      .output("image", &Outputs::image, "Colour at every sample, linear Rec.709, premultiplied.")
+      .blank_where(&Inputs::points);
 }
 
 }  // namespace frustum

@@ -146,6 +146,10 @@ void tile(const State& state, const TilesOf<Inputs>&, const TilesOf<Outputs>& ou
   std::visit([&](const auto& filler) { fill(filler, out[&Outputs::layers], arena); }, state);
 }
 
+Rect seen(const State& state, Rect rect) {
+  return std::visit([&](const auto& filler) { return seen_part(filler.rasterizer->bins(), rect); }, state);
+}
+
 }  // namespace
 
 NodeType nodes::visibility_abuffer() {
@@ -176,9 +180,10 @@ NodeType nodes::visibility_abuffer() {
       .output(
           "layers", &Outputs::layers,
           "Face and depth by layer: sample l * samples + s is the l-th fragment at sample s; ties by source.")
-      .shortcut(
-          hiding_name, hiding, "Fragments behind an opaque one are left out: nothing of them would show.",
-          {"face", 3});  // tests/bench/effects_bench.cpp, one thread: to find out that no face is opaque
+      .shortcut(hiding_name, hiding,
+                "Fragments behind an opaque one are left out: nothing of them would show.",
+                {"face", 3})  // tests/bench/effects_bench.cpp, one thread: to find out that no face is opaque
+      .seen(seen);
 }
 
 }  // namespace frustum

@@ -147,7 +147,8 @@ NodeType nodes::visibility_composite() {
              "The pattern that visibility.abuffer has; left out: one sample a pixel.")
       .output("image", &Outputs::image, "One colour a sample, premultiplied; 0 where nothing is.")
       .effect(transparency_name, transparency, "What lies behind the nearest face shines through.",
-              {"sample", 15});  // tests/bench/effects_bench.cpp, one thread, shared with others: 11 to 24
+              {"sample", 15})  // tests/bench/effects_bench.cpp, one thread, shared with others: 11 to 24
+      .blank_where(&Inputs::image);
 }
 
 }  // namespace frustum

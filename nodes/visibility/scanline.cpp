@@ -42,7 +42,8 @@ NodeType nodes::visibility_scanline() {
       .input("pattern", &Inputs::pattern, "Where a pixel's samples lie; left out: one sample in its middle.")
       .output("visibility", &Outputs::visibility,
               "The face and the depth at each sample: the bytes of rasterize.triangles.")
-      .output("depth", &Outputs::depth, "The depth alone; where nothing is seen, that of the far plane.");
+      .output("depth", &Outputs::depth, "The depth alone; where nothing is seen, that of the far plane.")
+      .seen(seen_faces<State>);
 }
 
 }  // namespace frustum

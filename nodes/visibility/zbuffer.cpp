@@ -111,7 +111,8 @@ NodeType nodes::visibility_zbuffer() {
              "Names of the materials whose faces are moved; empty moves all. Reversed, adding brings nearer.")
       .output("visibility", &Outputs::visibility,
               "The face and the depth that was kept; ties go to the lowest source.")
-      .output("depth", &Outputs::depth, "The depth alone; where nothing is seen, that of the far plane.");
+      .output("depth", &Outputs::depth, "The depth alone; where nothing is seen, that of the far plane.")
+      .seen(seen_faces<State>);
 }
 
 }  // namespace frustum

@@ -55,6 +55,12 @@ Prepared<Finders, Outputs> prepare_finder(const Inputs& in, Context& ctx, const 
   });
 }
 
+// For finders with bins: the part of `rect` that some face may be seen in.
+template <class Finders>
+Rect seen_faces(const Finders& finders, Rect rect) {
+  return std::visit([&](const auto& f) { return seen_part(f.finder.bins(), rect); }, finders);
+}
+
 template <class Finders, class Outputs>
 void fill_faces(const Finders& finders, const TilesOf<Outputs>& out, Arena& arena) {
   std::visit(

@@ -14,6 +14,12 @@ Rect picture_window(const Mesh& mesh);
 
 inline kernels::PixelRect pixel_rect(Rect r) { return {r.x0, r.y0, r.x1, r.y1}; }
 
+// The part of `rect` that some face of the bins may be seen in.
+inline Rect seen_part(const kernels::TriangleBins& bins, Rect rect) {
+  const kernels::PixelRect part = kernels::drawn_part(bins, pixel_rect(rect));
+  return part.empty() ? Rect{} : Rect{part.x0, part.y0, part.x1, part.y1};
+}
+
 // The samples of a pattern, or the middle of the pixel where there is none.
 kernels::SamplePositions sample_positions(const SamplePattern* pattern);
 

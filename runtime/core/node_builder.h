@@ -179,6 +179,22 @@ class NodeBuilder {
     return *this;
   }
 
+  // A part of `rect` (any part of the outputs' window) outside of which tile() finds nothing: no face at any sample.
+  template <class State>
+  NodeBuilder& seen(Rect (*f)(const State&, Rect rect)) {
+    type_.seen = [f](const void* state, Rect rect) { return f(*static_cast<const State*>(state), rect); };
+    return *this;
+  }
+  // All outputs are 0, and no_face in planes of integers, wherever this input is so or sees no face, throughout what
+  // reads() names. tile() is then called for what may show something only, and the rest is filled for those who read it.
+  template <class M>
+  NodeBuilder& blank_where(M I::*member) {
+    const std::size_t offset = detail::offset_in(member);
+    for (std::size_t i = 0; i < type_.inputs.size(); ++i)
+      if (type_.inputs[i].offset == offset) type_.blank_where = i;
+    return *this;
+  }
+
   void geometry(O (*run)(const I&, const P&, Context&)) { run_ = run; }
   template <class State>
   void pixel(Prepared<State, O> (*prepare)(const I&, const P&, Context&),

@@ -101,6 +101,11 @@ class NodeType {
   std::function<void(const void* state, std::span<const Tile> in, std::span<const Tile> out, Arena&)> tile;
   // The rectangle of an input that filling `rect` reads; not cut to the input's window.
   std::function<Rect(const void* state, std::size_t input, Rect rect)> reads;
+  // A part of `rect` outside of which nothing is seen, whatever is drawn; empty: it may be seen anywhere.
+  std::function<Rect(const void* state, Rect rect)> seen;
+  // The input that must show something: where it is blank throughout what reads() names, all outputs are blank, so that
+  // tile() need not be called there. Blank is 0, and no_face in planes of integers.
+  std::optional<std::size_t> blank_where = {};
 
   // ----- checks of the declaration itself
   std::size_t input_members = 0, output_members = 0,

@@ -3,6 +3,7 @@
 #include "runtime/core/error.h"
 #include "runtime/core/pages.h"
 
+#include <algorithm>
 #include <cstring>
 #include <new>
 #include <vector>
@@ -33,7 +34,33 @@ Pages pages_for(const Frame& f, Contents contents) {
   }
 }
 
+// Sets all bytes of a rectangle of every plane that a tile stores.
+void blank(const Tile& tile, const Rect& r) {
+  if (r.empty()) return;
+  const Tile part = tile.part(r);
+  const auto& planes = part.frame().planes;
+  const auto width = static_cast<std::size_t>(r.width());
+  for (int p = 0; p < static_cast<int>(planes.size()); ++p) {
+    if (!part.has(p)) continue;
+    for (int s = 0; s < part.samples(); ++s)
+      for (int y = r.y0; y < r.y1; ++y) switch (planes[static_cast<std::size_t>(p)].kind) {
+          case PlaneKind::f32: std::fill_n(part.row<float>(p, s, y), width, 0.0F); break;
+          case PlaneKind::f64: std::fill_n(part.row<double>(p, s, y), width, 0.0); break;
+          case PlaneKind::u32: std::fill_n(part.row<std::uint32_t>(p, s, y), width, ~0U); break;
+        }
+  }
+}
+
 }  // namespace
+
+void blank_around(const Tile& tile, const Rect& inner) {
+  const Rect& all = tile.rect();
+  if (inner.empty()) return blank(tile, all);
+  blank(tile, {all.x0, all.y0, all.x1, inner.y0});
+  blank(tile, {all.x0, inner.y0, inner.x0, inner.y1});
+  blank(tile, {inner.x1, inner.y0, all.x1, inner.y1});
+  blank(tile, {all.x0, inner.y1, all.x1, all.y1});
+}
 
 struct Raster::Storage {
   Frame frame;

@@ -93,6 +93,10 @@ class Raster {
   std::shared_ptr<const Storage> storage_;
 };
 
+// Fills what of a tile lies outside of `inner` with what shows nothing: 0, and all bits set in planes of integers, which
+// is no face. `inner` lies within the tile's rectangle, or is empty.
+void blank_around(const Tile&, const Rect& inner);
+
 // Copies every plane that both tiles store over the intersection of their rectangles. Both frames have the same planes.
 void copy(const Tile& from, const Tile& to);
 

@@ -6,6 +6,7 @@
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <limits>
@@ -101,9 +102,9 @@ class PixelRun {
 
   void fill(const Targets& targets, int index, Progress& progress) {
     if (job_.cancel != nullptr && job_.cancel->cancelled()) throw Cancelled();
-    program_.run(targets, workers_.local());
-    for (const Tile& t : targets)
-      if (!t.empty() && !health_of(t).finite()) {
+    const std::vector<Rect> shown = program_.run(targets, workers_.local());
+    for (std::size_t r = 0; r < targets.size(); ++r)
+      if (!shown[r].empty() && !health_of(targets[r].part(shown[r])).finite()) {
         int known = first_bad_.load();
         while (index < known && !first_bad_.compare_exchange_weak(known, index)) {
         }
@@ -129,7 +130,6 @@ class PixelRun {
 
   // The rows of one band: a raster for every root that a sink reads, filled by tiles in parallel.
   struct Band {
-    int row = 0;
     Rect rect;
     std::vector<std::optional<Raster>> roots;
   };
@@ -142,28 +142,25 @@ class PixelRun {
     return streamed;
   }
 
-  std::shared_ptr<Band> fill_band(int row, const std::vector<bool>& streamed, Progress& progress) {
-    auto band = std::make_shared<Band>();
-    band->row = row;
-    band->rect = grid_.band(row);
-    band->roots.resize(streamed.size());
+  void fill_band(int row, const std::vector<bool>& streamed, Progress& progress, Band& band) {
+    band.rect = grid_.band(row);
+    band.roots.assign(streamed.size(), std::nullopt);
     for (std::size_t r = 0; r < streamed.size(); ++r) {
       if (!streamed[r] || job_.whole[r]) continue;
       Frame f = program_.frame(program_.roots()[r]);
-      f.window = intersection(f.window, band->rect);
-      band->roots[r].emplace(std::move(f), Contents::anything);
+      f.window = intersection(f.window, band.rect);
+      band.roots[r].emplace(std::move(f), Contents::anything);
     }
     tbb::parallel_for(0, grid_.columns(), [&](int column) {
       const Rect rect = grid_.tile(column, row);
       Targets targets = whole_targets(rect);
       for (std::size_t r = 0; r < targets.size(); ++r)
-        if (band->roots[r]) {
-          const Rect part = intersection(rect, band->roots[r]->frame().window);
-          if (!part.empty()) targets[r] = band->roots[r]->view(part);
+        if (band.roots[r]) {
+          const Rect part = intersection(rect, band.roots[r]->frame().window);
+          if (!part.empty()) targets[r] = band.roots[r]->view(part);
         }
       fill(targets, row * grid_.columns() + column, progress);
     });
-    return band;
   }
 
   void write_band(const Band& band) {
@@ -195,22 +192,27 @@ class PixelRun {
     }
   }
 
-  // Bands are filled while earlier ones are written: file compression hides behind the pixels' own work.
+  // Bands are filled while earlier ones are written: file compression hides behind the pixels' own work. They leave in
+  // order, so those in flight follow one another, and each has a place of its own. What travels is the number of the row:
+  // of a pipeline that is cancelled, oneTBB never destroys the items that are on their way.
   void walk_bands(Progress& progress) {
     const std::vector<bool> streamed = streamed_roots();
-    constexpr std::size_t in_flight = 3;
+    constexpr int in_flight = 3;
+    std::array<Band, in_flight> bands;
+    const auto band_of = [&](int row) -> Band& { return bands[static_cast<std::size_t>(row % in_flight)]; };
     int next = 0;
     tbb::parallel_pipeline(
         in_flight,
-        tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order,
-                                    [&](tbb::flow_control& flow) {
-                                      if (next == grid_.rows()) flow.stop();
-                                      return next++;
-                                    }) &
-            tbb::make_filter<int, std::shared_ptr<Band>>(
-                tbb::filter_mode::parallel, [&](int row) { return fill_band(row, streamed, progress); }) &
-            tbb::make_filter<std::shared_ptr<Band>, void>(
-                tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<Band>& b) { write_band(*b); }));
+        tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& flow) {
+          if (next == grid_.rows()) flow.stop();
+          return next++;
+        }) & tbb::make_filter<int, int>(tbb::filter_mode::parallel, [&](int row) {
+          fill_band(row, streamed, progress, band_of(row));
+          return row;
+        }) & tbb::make_filter<int, void>(tbb::filter_mode::serial_in_order, [&](int row) {
+          write_band(band_of(row));
+          band_of(row).roots.clear();
+        }));
   }
 
   // Runs the first bad tile again and looks at every operation on the way.

@@ -5,7 +5,9 @@
 
 namespace frustum {
 
-// Planes of pixels that no node reads and no file holds; outputs of geometry nodes that nobody reads.
-inline constexpr std::string_view unread_planes = "unread_planes", unused_outputs = "unused_outputs";
+// Planes of pixels that no node reads and no file holds; outputs of geometry nodes that nobody reads; pixels that show
+// nothing, of nodes that are blank there.
+inline constexpr std::string_view unread_planes = "unread_planes", unused_outputs = "unused_outputs",
+                                  blank_pixels = "blank_pixels";
 
 }  // namespace frustum

@@ -71,6 +71,7 @@ class Pass {
     build_ops();
     find_roots();
     decide_unread();
+    decide_blank();
     cut_where_margins_are_wide();
     open_sinks();
     const int edge = fit_memory();
@@ -91,6 +92,7 @@ class Pass {
       for (const OutputLayer& layer : graph_.outputs[o].layers)
         if (!state_.buffer(layer.from)) add_root(layer.from);
     decide_unread();
+    decide_blank();
     tell_need();
   }
 
@@ -149,6 +151,21 @@ class Pass {
       state_.decided(pass_.nodes[i],
                      {{std::string(unread_planes),
                        off_exact(fmt::format("nobody reads {}", fmt::join(unread, ", ")), numbers)}});
+    }
+  }
+
+  // Where nothing is seen, nodes that are blank there do not run, unless a run is asked to compute it all the same.
+  void decide_blank() {
+    if (std::none_of(ops_.begin(), ops_.end(), [](const TileOp& op) { return op.type->blank_where; })) return;
+    const std::vector<TileProgram::Pixels> pixels = TileProgram(ops_, roots_).count_blank();
+    for (std::size_t i = 0; i < ops_.size(); ++i) {
+      if (pixels[i].blank == 0) continue;
+      const auto samples = static_cast<std::uint64_t>(ops_[i].prepared->frames.front()->samples());
+      state_.decided(pass_.nodes[i],
+                     {{std::string(blank_pixels), off_exact(fmt::format("nothing is seen in {} of {} pixels",
+                                                                        pixels[i].blank, pixels[i].all),
+                                                            pixels[i].blank * samples)}});
+      ops_[i].everywhere = state_.options.effects.forces(blank_pixels);
     }
   }
 

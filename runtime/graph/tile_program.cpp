@@ -3,7 +3,6 @@
 #include "runtime/core/float_environment.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <new>
 
 namespace frustum {
@@ -13,10 +12,21 @@ constexpr std::size_t alignment = 64;
 constexpr std::size_t cache_budget = std::size_t{1}
                                      << 20;  // a core's share of L2 on the processors of the last decade
 constexpr double worst_area_ratio = 1.5;
+constexpr int pixels_apart = 16;  // of f32, 64 bytes
 
 std::size_t aligned(std::size_t n) { return (n + alignment - 1) / alignment * alignment; }
 
 bool any(const std::vector<bool>& v) { return std::find(v.begin(), v.end(), true) != v.end(); }
+
+// What of `stored` lies in `r`, begun and ended a little further out, so that its rows lie on vector boundaries, too.
+Rect aligned_within(const Rect& stored, const Rect& r) {
+  Rect part = intersection(stored, r);
+  if (part.empty()) return part;
+  part.x0 = stored.x0 + (part.x0 - stored.x0) / pixels_apart * pixels_apart;
+  part.x1 =
+      std::min(stored.x1, stored.x0 + (part.x1 - stored.x0 + pixels_apart - 1) / pixels_apart * pixels_apart);
+  return part;
+}
 
 // Bytes of the planes that somebody reads, for a rectangle of this size.
 std::size_t tile_bytes(const Frame& f, const std::vector<bool>& read, Rect r) {
@@ -33,13 +43,10 @@ std::size_t tile_bytes(const Frame& f, const std::vector<bool>& read, Rect r) {
 // ----- memory
 
 void TileMemory::grow(std::size_t bytes) {
-  const std::size_t size = std::max(aligned(bytes), 2 * size_);
-  auto* p = static_cast<std::byte*>(std::aligned_alloc(alignment, size));
-  if (p == nullptr) throw std::bad_alloc();
+  const std::size_t size = std::max(aligned(bytes), 2 * block_.size());
   // Tiles in flight keep pointing into the old block, which lives until everything is given back.
-  if (block_) retired_.push_back(std::move(block_));
-  block_ = {p, [](void* q) { std::free(q); }};
-  size_ = size;
+  if (block_.size() > 0) retired_.push_back(std::move(block_));
+  block_ = Pages(size, Contents::anything);
   pieces_ = {{0, size, false}};
 }
 
@@ -53,7 +60,7 @@ std::byte* TileMemory::take(std::size_t bytes) {
       const Piece rest{pieces_[i].offset + bytes, pieces_[i].size - bytes, false};
       pieces_[i] = {pieces_[i].offset, bytes, true};
       if (rest.size != 0) pieces_.insert(pieces_.begin() + static_cast<std::ptrdiff_t>(i) + 1, rest);
-      return block_.get() + pieces_[i].offset;
+      return block_.data() + pieces_[i].offset;
     }
     grow(in_use_);
   }
@@ -61,8 +68,9 @@ std::byte* TileMemory::take(std::size_t bytes) {
 }
 
 void TileMemory::give_back(std::byte* p) {
-  if (p < block_.get() || p >= block_.get() + size_) return;  // of a retired block: freed by clear()
-  const auto offset = static_cast<std::size_t>(p - block_.get());
+  if (p < block_.data() || p >= block_.data() + block_.size())
+    return;  // of a retired block: freed by clear()
+  const auto offset = static_cast<std::size_t>(p - block_.data());
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     if (pieces_[i].offset != offset) continue;
     pieces_[i].used = false;
@@ -82,7 +90,7 @@ void TileMemory::give_back(std::byte* p) {
 void TileMemory::clear() {
   retired_.clear();
   in_use_ = 0;
-  if (block_) pieces_ = {{0, size_, false}};
+  if (block_.size() > 0) pieces_ = {{0, block_.size(), false}};
 }
 
 // ----- program
@@ -119,6 +127,71 @@ std::vector<Rect> TileProgram::rectangles(std::span<const Rect> targets) const {
   return rects;
 }
 
+// The part of each operation's rectangle that may show something, in the order of the data.
+std::vector<Rect> TileProgram::seen_in(std::span<const Rect> rects) const {
+  std::vector<Rect> seen(rects.begin(), rects.end());
+  for (std::size_t i = 0; i < ops_.size(); ++i) {
+    const TileOp& op = ops_[i];
+    const Rect r = rects[i];
+    if (r.empty()) continue;
+    if (op.type->seen) {
+      seen[i] = intersection(op.type->seen(op.prepared->state.get(), r), r);
+    } else if (const auto k = op.type->blank_where; k && op.inputs[*k].op) {
+      // A pixel that is seen shows in all that read it: as far to one side as reads() looks to the other.
+      const Rect s = seen[*op.inputs[*k].op], read = op.type->reads(op.prepared->state.get(), *k, r);
+      seen[i] = s.empty() ? Rect{}
+                          : intersection({s.x0 - (read.x1 - r.x1), s.y0 - (read.y1 - r.y1),
+                                          s.x1 + (r.x0 - read.x0), s.y1 + (r.y0 - read.y0)},
+                                         r);
+    }
+  }
+  return seen;
+}
+
+std::vector<TileProgram::Area> TileProgram::areas(std::span<const Rect> targets) const {
+  const std::vector<Rect> rects = rectangles(targets), seen = seen_in(rects);
+  std::vector<Area> areas(ops_.size());
+  for (std::size_t i = 0; i < roots_.size(); ++i) {
+    Rect& stored = areas[roots_[i].op].stored;
+    stored = hull(stored, targets[i]);
+  }
+  for (std::size_t i = ops_.size(); i-- > 0;) {
+    const TileOp& op = ops_[i];
+    Area& area = areas[i];
+    if (rects[i].empty()) area.stored = {};
+    area.filled = op.type->blank_where && !op.everywhere ? aligned_within(area.stored, seen[i]) : area.stored;
+    for (std::size_t k = 0; k < op.inputs.size() && !area.filled.empty(); ++k) {
+      if (!op.inputs[k].op) continue;
+      const Rect read = op.type->reads(op.prepared->state.get(), k, area.filled);
+      const Rect window = ops_[*op.inputs[k].op].prepared->frames[op.inputs[k].port]->window;
+      Rect& stored = areas[*op.inputs[k].op].stored;
+      stored = hull(stored, intersection(read, window));
+    }
+  }
+  return areas;
+}
+
+std::vector<TileProgram::Pixels> TileProgram::count_blank() const {
+  constexpr int edge = 256;
+  std::vector<Pixels> pixels(ops_.size());
+  Rect all;
+  for (const TileRoot& r : roots_) all = hull(all, frame(r).window);
+  std::vector<Rect> targets(roots_.size());
+  for (int y = all.y0; y < all.y1; y += std::min(edge, all.y1 - y))
+    for (int x = all.x0; x < all.x1; x += std::min(edge, all.x1 - x)) {
+      const Rect tile{x, y, x + std::min(edge, all.x1 - x), y + std::min(edge, all.y1 - y)};
+      for (std::size_t r = 0; r < roots_.size(); ++r)
+        targets[r] = intersection(tile, frame(roots_[r]).window);
+      const std::vector<Rect> rects = rectangles(targets);
+      const std::vector<Area> areas = this->areas(targets);
+      for (std::size_t i = 0; i < ops_.size(); ++i) {
+        pixels[i].all += static_cast<std::uint64_t>(rects[i].area());
+        pixels[i].blank += static_cast<std::uint64_t>(rects[i].area() - areas[i].filled.area());
+      }
+    }
+  return pixels;
+}
+
 // The tiles of one call of run(): plane pointers and views by operation and output.
 struct TileProgram::Live {
   struct Output {
@@ -126,6 +199,11 @@ struct TileProgram::Live {
     Tile tile;
   };
   std::vector<std::vector<Output>> outputs;
+  std::vector<Tile> in, out;  // of the operation that runs
+
+  explicit Live(std::span<const TileOp> ops) : outputs(ops.size()) {
+    for (std::size_t i = 0; i < ops.size(); ++i) outputs[i].resize(ops[i].planes_read.size());
+  }
 };
 
 // Where an output's tile lies: in the target itself for a root that is filled exactly, else in the worker's memory.
@@ -144,7 +222,44 @@ Tile TileProgram::place(std::size_t op, std::size_t port, Rect rect, std::span<c
   return {&frame, rect, rect, row, row * rect.height(), planes};
 }
 
-void TileProgram::run(std::span<const Tile> targets, TileWorker& worker, const After& after) const {
+// Places the outputs of an operation, blank but for what tile() is to fill.
+void TileProgram::place_outputs(std::size_t op, const Area& area, std::span<const Tile> targets,
+                                TileMemory& memory, Live& live) const {
+  live.out.clear();
+  for (std::size_t port = 0; port < live.outputs[op].size(); ++port) {
+    auto& [planes, tile] = live.outputs[op][port];
+    if (any(ops_[op].planes_read[port])) {
+      tile = place(op, port, area.stored, targets, memory, planes);
+      if (area.filled != area.stored) blank_around(tile, area.filled);
+    }
+    live.out.push_back(tile.empty() ? tile : tile.part(area.filled));
+  }
+}
+
+void TileProgram::find_inputs(std::size_t op, Live& live) const {
+  live.in.clear();
+  for (const TileInput& input : ops_[op].inputs) {
+    if (input.op)
+      live.in.push_back(live.outputs[*input.op][input.port].tile);
+    else if (input.whole)
+      live.in.push_back(input.whole->view());
+    else
+      live.in.emplace_back();
+  }
+}
+
+// Gives back what nobody reads after this operation.
+void TileProgram::give_back(std::size_t op, TileMemory& memory, const Live& live) const {
+  for (std::size_t earlier = 0; earlier <= op; ++earlier) {
+    if (last_reader_[earlier] != op) continue;
+    for (const auto& o : live.outputs[earlier])
+      for (std::byte* p : o.planes)
+        if (p != nullptr) memory.give_back(p);
+  }
+}
+
+std::vector<Rect> TileProgram::run(std::span<const Tile> targets, TileWorker& worker,
+                                   const After& after) const {
   using Clock = std::chrono::steady_clock;
   worker.memory.clear();
   worker.costs.time.resize(ops_.size());
@@ -152,56 +267,33 @@ void TileProgram::run(std::span<const Tile> targets, TileWorker& worker, const A
 
   std::vector<Rect> wanted;
   for (const Tile& t : targets) wanted.push_back(t.empty() ? Rect{} : t.rect());
-  const std::vector<Rect> rects = rectangles(wanted);
+  const std::vector<Area> areas = this->areas(wanted);
 
-  Live live;
-  live.outputs.resize(ops_.size());
-  std::vector<Tile> in, out;
+  Live live(ops_);
   for (std::size_t i = 0; i < ops_.size(); ++i) {
     const TileOp& op = ops_[i];
-    const Rect rect = rects[i];
-    auto& outputs = live.outputs[i];
-    outputs.resize(op.planes_read.size());
-    if (rect.empty()) continue;
-
-    out.clear();
-    for (std::size_t o = 0; o < outputs.size(); ++o) {
-      if (any(op.planes_read[o]))
-        outputs[o].tile = place(i, o, rect, targets, worker.memory, outputs[o].planes);
-      out.push_back(outputs[o].tile);
-    }
-    in.clear();
-    for (const TileInput& input : op.inputs) {
-      if (input.op)
-        in.push_back(live.outputs[*input.op][input.port].tile);
-      else if (input.whole)
-        in.push_back(input.whole->view());
-      else
-        in.emplace_back();
-    }
-
     const auto start = Clock::now();
-    worker.arena.reset();
-    {
-      const FloatEnvironment environment;
-      op.type->tile(op.prepared->state.get(), in, out, worker.arena);
+    if (!areas[i].stored.empty()) place_outputs(i, areas[i], targets, worker.memory, live);
+    if (!areas[i].filled.empty()) {
+      find_inputs(i, live);
+      worker.arena.reset();
+      {
+        const FloatEnvironment environment;
+        op.type->tile(op.prepared->state.get(), live.in, live.out, worker.arena);
+      }
+      if (after) after(i, live.in, live.out);
     }
     worker.costs.time[i] += Clock::now() - start;
-    worker.costs.pixels[i] += static_cast<std::uint64_t>(rect.area());
-    if (after) after(i, in, out);
-
-    for (std::size_t earlier = 0; earlier <= i; ++earlier) {
-      if (last_reader_[earlier] != i) continue;
-      for (const auto& o : live.outputs[earlier])
-        for (std::byte* p : o.planes)
-          if (p != nullptr) worker.memory.give_back(p);
-    }
+    worker.costs.pixels[i] += static_cast<std::uint64_t>(areas[i].filled.area());
+    give_back(i, worker.memory, live);
   }
   for (std::size_t r = 0; r < roots_.size(); ++r) {
     if (wanted[r].empty()) continue;
     const Tile& made = live.outputs[roots_[r].op][roots_[r].port].tile;
     if (!made.shares_storage(targets[r])) copy(made, targets[r]);
+    wanted[r] = intersection(wanted[r], areas[roots_[r].op].filled);
   }
+  return wanted;
 }
 
 TileProgram::Estimate TileProgram::estimate(int edge) const {

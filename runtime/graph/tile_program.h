@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/core/node_type.h"
+#include "runtime/core/pages.h"
 #include "runtime/core/raster.h"
 
 #include <array>
@@ -25,6 +26,7 @@ struct TileOp {
   std::shared_ptr<const PreparedNode> prepared;
   std::vector<TileInput> inputs;               // one an input of the type
   std::vector<std::vector<bool>> planes_read;  // [output][plane]; an output that nobody reads has none set
+  bool everywhere = false;                     // runs where it is blank, too
 };
 
 // A port whose pixels are wanted, and the root's index among the targets of run().
@@ -52,9 +54,9 @@ class TileMemory {
     bool used;
   };
   void grow(std::size_t bytes);
-  std::vector<std::unique_ptr<std::byte, void (*)(void*)>> retired_;
-  std::unique_ptr<std::byte, void (*)(void*)> block_{nullptr, nullptr};
-  std::size_t size_ = 0, in_use_ = 0, peak_ = 0;
+  std::vector<Pages> retired_;
+  Pages block_;
+  std::size_t in_use_ = 0, peak_ = 0;
   std::vector<Piece> pieces_;
 };
 
@@ -74,11 +76,27 @@ class TileProgram {
   const Frame& frame(const TileRoot& r) const { return *ops_[r.op].prepared->frames[r.port]; }
 
   // Fills the rectangle of each target (one a root; an empty rect is skipped). `after` sees every operation's finished
-  // outputs with its inputs, for health checks and inspections.
+  // outputs with its inputs, for health checks and inspections. Returns the part of each target that may show something:
+  // around it, it is blank.
   using After = std::function<void(std::size_t op, std::span<const Tile> in, std::span<const Tile> out)>;
-  void run(std::span<const Tile> targets, TileWorker& worker, const After& after = {}) const;
+  std::vector<Rect> run(std::span<const Tile> targets, TileWorker& worker, const After& after = {}) const;
 
-  // The rectangle that each operation fills for the given targets, propagated backwards through reads().
+  // What one operation does for given targets: tile() fills `filled`, and around it `stored` is blank.
+  struct Area {
+    Rect stored, filled;
+  };
+  // Where nothing is seen, what is blank there (NodeType::blank_where) is not run, nor is what only that reads.
+  std::vector<Area> areas(std::span<const Rect> targets) const;
+
+  // The pixels that each operation would fill whatever is seen there, and how many of them are left out, in tiles of 256 px
+  // over the roots' windows.
+  struct Pixels {
+    std::uint64_t all = 0, blank = 0;
+  };
+  std::vector<Pixels> count_blank() const;
+
+  // The rectangle that each operation fills for the given targets, whatever is seen there: propagated backwards through
+  // reads().
   std::vector<Rect> rectangles(std::span<const Rect> targets) const;
 
   struct Estimate {
@@ -95,6 +113,10 @@ class TileProgram {
 
  private:
   struct Live;
+  void place_outputs(std::size_t op, const Area&, std::span<const Tile> targets, TileMemory&, Live&) const;
+  void find_inputs(std::size_t op, Live&) const;
+  void give_back(std::size_t op, TileMemory&, const Live&) const;
+  std::vector<Rect> seen_in(std::span<const Rect> rects) const;
   Tile place(std::size_t op, std::size_t port, Rect rect, std::span<const Tile> targets, TileMemory&,
              std::vector<std::byte*>& planes) const;
 

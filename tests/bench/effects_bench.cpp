@@ -182,7 +182,7 @@ const bool registered = [] {
   for (const char* effect :
        {"highlights", "ambient_light", "attenuation", "two_sided_lighting", "texture_lookup"})
     add({effect, graph(ball, perspective, 4, wide), "lit.color"});
-  for (const char* effect : {"color_conversion", "unread_planes"})
+  for (const char* effect : {"color_conversion", "unread_planes", "blank_pixels"})
     add({effect, graph(ball, perspective, 4, wide)});
   add({"clipping", graph(ball, perspective, 1, wide, "phong", "[0, 0, 9]"), "cut.mesh"});
   add({"outside_faces", graph(ball, perspective, 1, wide), "screen.mesh"});

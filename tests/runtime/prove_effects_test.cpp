@@ -187,8 +187,9 @@ class ProvenEffects : public testing::Test {
   }
   static Demand demand(const Graph& g) { return {.ports = named_ports(g)}; }
 
-  static RunResult run(Session& session, const Graph& g, const EffectPolicy& policy) {
-    RunOptions o{.demand = demand(g)};
+  static RunResult run(Session& session, const Graph& g, const EffectPolicy& policy,
+                       Observer* observer = nullptr) {
+    RunOptions o{.demand = demand(g), .observer = observer};
     o.effects = policy;
     RunResult r = session.run(g, o, false);
     if (r.end != RunResult::End::done) throw std::runtime_error(to_text(r.problems));
@@ -252,6 +253,22 @@ TEST_F(ProvenEffects, PlanesAndOutputsThatNobodyReadsAreFilledWhenForced) {
   EXPECT_EQ(verdict(planned, "unread_planes"), Verdict::Kind::off_exact);
   const RunResult forced = run(session_, g, {.forced = {"unread_planes", "unused_outputs"}});
   EXPECT_EQ(planned.buffers.begin()->second.digest(), forced.buffers.begin()->second.digest());
+}
+
+TEST_F(ProvenEffects, PixelsThatShowNothingAreComputedWhenForced) {
+  struct Pixels : Observer {
+    std::uint64_t points = 0;
+    void pixel_times(const std::vector<PixelNodeTime>& times) override {
+      for (const PixelNodeTime& t : times)
+        if (t.node == "points") points += t.pixels;
+    }
+  } few, all;
+  const Graph g = load(session_, {{"eye", "[0, 0, 12]"}}, Precision::single);
+  const RunResult planned = run(session_, g, {}, &few);
+  EXPECT_EQ(verdict(planned, "blank_pixels"), Verdict::Kind::off_exact);
+  const RunResult forced = run(session_, g, {.forced = {"blank_pixels"}}, &all);
+  EXPECT_EQ(planned.buffers.begin()->second.digest(), forced.buffers.begin()->second.digest());
+  EXPECT_LT(2 * few.points, all.points);
 }
 
 TEST_F(ProvenEffects, AShortcutChangesGeometryAndNoPicture) {

@@ -52,7 +52,9 @@ struct State {
   glm::ivec2 nan_at;
 };
 inline float value(int x, int y, int s) {
-  const auto h = static_cast<std::uint32_t>(x * 73856093 ^ y * 19349663 ^ s * 83492791) * 2654435761u;
+  const auto h = (static_cast<std::uint32_t>(x) * 73856093u ^ static_cast<std::uint32_t>(y) * 19349663u ^
+                  static_cast<std::uint32_t>(s) * 83492791u) *
+                 2654435761u;
   return static_cast<float>(h >> 8) / 16777216.0f;
 }
 inline Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context&) {
@@ -128,7 +130,51 @@ inline NodeType type() {
       .param("radius", &Params::radius, "Radius.")
       .output("image", &Outputs::image, "Means.");
 }
+// The same, and it says that the mean of zeros is 0.
+inline NodeType smear() {
+  return pixel_node("test.smear", prepare, tile)
+      .reads(reads)
+      .doc("Mean.")
+      .input("image", &Inputs::image, "Pixels.")
+      .param("radius", &Params::radius, "Radius.")
+      .output("image", &Outputs::image, "Means.")
+      .blank_where(&Inputs::image);
+}
 }  // namespace blur
+
+// Noise within a rectangle and 0 around it, which it says.
+namespace spot {
+struct Inputs {};
+struct Params {
+  glm::ivec2 size{40, 30}, from{0, 0}, to{0, 0};
+};
+struct Outputs {
+  Tiled<Image> image;
+};
+struct State {
+  Rect seen;
+};
+inline Prepared<State, Outputs> prepare(const Inputs&, const Params& p, Context&) {
+  return {{{p.from.x, p.from.y, p.to.x, p.to.y}},
+          {Frame{.window = {0, 0, p.size.x, p.size.y}, .planes = {{"R", PlaneKind::f32}}}}};
+}
+inline void tile(const State& s, const TilesOf<Inputs>&, const TilesOf<Outputs>& out, Arena&) {
+  const Tile& t = out[&Outputs::image];
+  for (int y = t.rect().y0; y < t.rect().y1; ++y)
+    for (int x = t.rect().x0; x < t.rect().x1; ++x)
+      t.row<float>(0, 0, y)[x - t.rect().x0] = s.seen.contains(x, y) ? source::value(x, y, 0) : 0;
+}
+inline Rect seen(const State& s, Rect rect) { return intersection(s.seen, rect); }
+inline NodeType type() {
+  return pixel_node("test.spot", prepare, tile)
+      .doc("Noise.")
+      .param("size", &Params::size, "Size.")
+      .param("from", &Params::from, "Top left pixel of the noise.")
+      .param("to", &Params::to, "Where it ends.")
+      .output("image", &Outputs::image, "Noise.")
+      .seen(seen);
+}
+}  // namespace spot
 
 // a + b, pixel by pixel.
 namespace add {
@@ -189,7 +235,8 @@ inline NodeType type() {
 }  // namespace total
 
 inline const Registry& registry() {
-  static const Registry r({number::type(), source::type(), blur::type(), add::type(), total::type()});
+  static const Registry r({number::type(), source::type(), blur::type(), blur::smear(), spot::type(),
+                           add::type(), total::type()});
   return r;
 }
 

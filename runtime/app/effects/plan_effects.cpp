@@ -30,6 +30,9 @@ const std::vector<EffectDoc>& effects_of_runs() {
       {.name = std::string(unread_planes),
        .doc = "Planes are filled that nobody reads.",
        .cost = {"number", 8}},  // tests/bench/effects_bench.cpp, one thread: 7.5 to 8.2
+      {.name = std::string(blank_pixels),
+       .doc = "Pixels are computed that show nothing.",
+       .cost = {"blank sample", 1}},  // tests/bench/effects_bench.cpp, one thread
       {.name = std::string(unused_outputs), .doc = "Outputs are computed that nobody reads."},
       {.name = std::string(unused_nodes), .doc = "Nodes run that feed nothing that is asked for."}};
   return all;
@@ -159,7 +162,8 @@ EffectPlan plan_effects(Session& session, const Graph& graph, const Demand& dema
 }
 
 std::vector<std::string> effect_names(const Registry& registry) {
-  std::set<std::string> names{std::string(unread_planes), std::string(unused_outputs)};
+  std::set<std::string> names{std::string(unread_planes), std::string(unused_outputs),
+                              std::string(blank_pixels)};
   for (const auto& [name, type] : registry)
     for (const EffectDoc& e : type.effects)
       if (is_simulated(e.name)) names.insert(e.name);

@@ -350,5 +350,60 @@ TEST_P(FillTrianglesSimd, HasTheBytesOfItsTwinForDenseMeshes) {
     }
 }
 
+// --- Where anything is drawn
+
+TEST(DrawnPart, HoldsEverySampleThatIsCovered) {
+  test::Random random(31);
+  const PixelRect window{-37, 11, 203, 140};
+  const Pattern pattern = test::random_pattern(random, 2, 4);
+  std::size_t outside = 0, covered = 0, empty = 0;
+  for (int n = 0; n < 60; ++n) {
+    ScreenScene<float> scene;
+    for (std::uint64_t k = random.below(6) + 1; k-- > 0;) {
+      const double size = std::exp2(random.uniform(-1, 7)), x = random.uniform(-37, 203),
+                   y = random.uniform(11, 140);
+      std::array<std::array<double, 3>, 3> corner{};
+      for (auto& c : corner) c = {x + random.uniform(-size, size), y + random.uniform(-size, size), 0.5};
+      scene.triangle(corner[0], corner[1], corner[2]);
+    }
+    const auto seen = fill(scene, pattern, window, Twin::scalar);
+    const kernels::TriangleBins bins = kernels::bin_triangles(scene.view(), pattern.view(), window);
+    for (int r = 0; r < 20; ++r) {
+      const int x0 = static_cast<int>(random.uniform(-37, 202)),
+                y0 = static_cast<int>(random.uniform(11, 139));
+      const PixelRect rect{x0, y0, std::min(203, x0 + 1 + static_cast<int>(random.below(150))),
+                           std::min(140, y0 + 1 + static_cast<int>(random.below(100)))};
+      const PixelRect part = kernels::drawn_part(bins, rect);
+      empty += part.empty();
+      for (int y = rect.y0; y < rect.y1; ++y)
+        for (int x = rect.x0; x < rect.x1; ++x)
+          for (int k = 0; k < 2; ++k) {
+            if (seen.id[seen.at(k, x, y)] == no_face) continue;
+            ++covered;
+            outside += x < part.x0 || x >= part.x1 || y < part.y0 || y >= part.y1;
+          }
+    }
+  }
+  EXPECT_EQ(outside, 0U);
+  EXPECT_GT(covered, 100'000U);
+  EXPECT_GT(empty, 100U) << "and says where there is nothing";
+}
+
+// Two boxes in four bins, seen through rectangles that cut them.
+TEST(DrawnPart, IsTheSmallestRectangleAroundTheBoxes) {
+  ScreenScene<float> scene;
+  scene.triangle({50, 60, 0.5}, {90, 60, 0.5}, {50, 70, 0.5});
+  scene.triangle({130, 100, 0.5}, {131, 100, 0.5}, {130, 101, 0.5});
+  const Pattern pattern;
+  const auto bins = kernels::bin_triangles(scene.view(), pattern.view(), PixelRect{0, 0, 256, 192});
+  const auto part = [&](PixelRect rect) { return kernels::drawn_part(bins, rect); };
+  EXPECT_EQ(part({0, 0, 256, 192}), (PixelRect{50, 60, 131, 101}));
+  EXPECT_EQ(part({0, 0, 100, 192}), (PixelRect{50, 60, 90, 70}));
+  EXPECT_EQ(part({60, 64, 70, 66}), (PixelRect{60, 64, 70, 66}));
+  EXPECT_TRUE(part({0, 0, 50, 192}).empty());
+  EXPECT_TRUE(part({90, 0, 130, 192}).empty());
+  EXPECT_TRUE(part({132, 0, 256, 192}).empty());
+}
+
 }  // namespace
 }  // namespace frustum
