@@ -127,7 +127,7 @@ void add_row(const R* light, const R* reach, const Run& run, R* to) {
 }
 
 /// Scales a row's premultiplied colours by the opacity of the face that each shows; nothing seen stays nothing. Blocks of
-/// a fixed length vectorise.
+/// a fixed length vectorise; most of them show one face.
 template <std::floating_point R>
 void fade_row(const Scene<R>& s, const std::uint32_t* id, std::size_t n, const kernels::ColorRows<R>& out) {
   if (s.opacity.empty()) return;
@@ -136,7 +136,12 @@ void fade_row(const Scene<R>& s, const std::uint32_t* id, std::size_t n, const k
   std::size_t x = 0;
   for (; x + block <= n; x += block) {
     std::array<R, block> opacity;
-    for (std::size_t k = 0; k < block; ++k) opacity[k] = of(id[x + k]);
+    std::uint32_t others = 0;
+    for (std::size_t k = 0; k < block; ++k) others |= id[x + k] ^ id[x];
+    if (others == 0)
+      opacity.fill(of(id[x]));
+    else
+      for (std::size_t k = 0; k < block; ++k) opacity[k] = of(id[x + k]);
     for (R* plane : out.plane) {
       if (plane == nullptr) continue;
       for (std::size_t k = 0; k < block; ++k) plane[x + k] *= opacity[k];
