@@ -1,7 +1,7 @@
 #include "nodes/light/camera.h"
 
 #include "nodes/light.h"
-#include "runtime/buffers/camera.h"
+#include "runtime/buffers/camera_choices.h"
 #include "runtime/buffers/light.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/core/node_type.h"
@@ -30,10 +30,16 @@ struct Inputs {
 struct Params {
   int size = 1024;
   light_camera::Side side = light_camera::Side::ny;
+  Conventions conventions = Conventions::gl;
+  int subpixel_bits = 8;
 };
 struct Outputs {
   Ref<Camera> camera;
 };
+
+void check(const Params& p) { check_subpixel_bits(p.conventions, p.subpixel_bits); }
+
+std::string states(const Params& p) { return stated(p.conventions, false, p.subpixel_bits); }
 
 const Light& only_source(const LightSet& set) {
   const Light* found = nullptr;
@@ -81,6 +87,7 @@ Outputs run(const Inputs& in, const Params& p, Context&) {
   if (v.height > 0) c.height = v.height;
   if (v.fov_y > 0) c.fov_y = v.fov_y;
   c.resolution = glm::ivec2(p.size);
+  c.conventions = p.conventions, c.subpixel_bits = p.subpixel_bits;
   return {std::make_shared<Camera>(c)};
 }
 
@@ -100,6 +107,12 @@ NodeType nodes::light_camera() {
             "Edges of shadows are off by up to a texel: wholly, at a share of the points like 1/size.", -0.5)
       .param("side", &Params::side,
              "Which side of the cube around a point light; other lights have one view.")
+      .param("conventions", &Params::conventions, conventions_doc)
+      .knob_of_taste({"gl", "vulkan", "d3d"}, conventions_basis)
+      .param("subpixel_bits", &Params::subpixel_bits, subpixel_bits_doc, {.range = between(4, 8)})
+      .knob({"4", "5", "6", "7", "8"}, subpixel_bits_basis)
+      .check(check)
+      .states(states)
       .output("camera", &Outputs::camera,
               "For project.orthographic where the light is directional, else for project.perspective.");
 }

@@ -1,10 +1,8 @@
 #include "nodes/scene/camera.h"
 
 #include "nodes/scene.h"
-#include "runtime/buffers/camera.h"
+#include "runtime/buffers/camera_choices.h"
 #include "runtime/core/node_type.h"
-
-#include <fmt/format.h>
 
 #include <numbers>
 
@@ -32,22 +30,10 @@ double far_of(const Params& p) { return p.far.value_or(std::numeric_limits<doubl
 void check(const Params& p) {
   const auto fault = scene::fault_of_camera(p.eye, p.target, p.up, p.near, far_of(p));
   if (!fault.empty()) throw NodeError("impossible_camera", std::string(fault.what), at_param(fault.param));
-  if (p.conventions == Conventions::d3d && p.subpixel_bits != 8)
-    throw NodeError("impossible_camera",
-                    "Direct3D snaps corners to 8 bits below a pixel, no more and no fewer",
-                    at_param("subpixel_bits"));
+  check_subpixel_bits(p.conventions, p.subpixel_bits);
 }
 
-std::string states(const Params& p) {
-  const kernels::ClipSpace space = clip_space(p.conventions, p.reversed_z);
-  return fmt::format(
-      "{}: depth {} to {}, y of clip space {}, the {} corner of a face provokes, corners snap to 1/{} px; "
-      "standard samples are those of Vulkan and Direct3D{}",
-      choices(p.conventions)[static_cast<std::size_t>(p.conventions)].second,
-      kernels::near_depth(space.depth), kernels::far_depth(space.depth), space.y_down ? "down" : "up",
-      provoking_corner(p.conventions) == 0 ? "first" : "last", 1 << p.subpixel_bits,
-      p.conventions == Conventions::gl ? ", since OpenGL leaves them open" : "");
-}
+std::string states(const Params& p) { return stated(p.conventions, p.reversed_z, p.subpixel_bits); }
 
 Outputs run(const Inputs&, const Params& p, Context&) {
   auto c = std::make_shared<Camera>();
@@ -85,18 +71,12 @@ NodeType nodes::scene_camera() {
              {.unit = "world units", .range = above(0)})
       .param("height", &Params::height, "Height of the view volume of an orthographic projection.",
              {.unit = "world units", .range = above(0)})
-      .param("reversed_z", &Params::reversed_z,
-             "Depth falls from 1 at near to 0 at far, which resolves far distances better.")
-      .knob_of_taste({"false", "true"},
-                     "In single precision, steps of depth grow like z^2 one way and like z the other.")
-      .param("conventions", &Params::conventions,
-             "Whose depth range, direction of y in clip space, and corner that flat faces take their values "
-             "from.")
-      .knob_of_taste({"gl", "vulkan", "d3d"}, "The same picture, by other numbers on the way there.")
-      .param("subpixel_bits", &Params::subpixel_bits,
-             "Corners of triangles snap to 2^-bits px; raising it keeps them truer. Direct3D has 8.",
-             {.range = between(4, 8)})
-      .knob({"4", "5", "6", "7", "8"}, "Corners are off by up to half a step, 2^-(bits + 1) px.")
+      .param("reversed_z", &Params::reversed_z, reversed_z_doc)
+      .knob_of_taste({"false", "true"}, reversed_z_basis)
+      .param("conventions", &Params::conventions, conventions_doc)
+      .knob_of_taste({"gl", "vulkan", "d3d"}, conventions_basis)
+      .param("subpixel_bits", &Params::subpixel_bits, subpixel_bits_doc, {.range = between(4, 8)})
+      .knob({"4", "5", "6", "7", "8"}, subpixel_bits_basis)
       .param("resolution", &Params::resolution,
              "Width and height of the picture; their ratio is that of the view.",
              {.unit = "px", .range = between(1, 65536)})

@@ -2,7 +2,7 @@
 
 #include "nodes/kernels/surface_measures.h"
 #include "nodes/scene.h"
-#include "runtime/buffers/camera.h"
+#include "runtime/buffers/camera_choices.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/core/node_type.h"
 
@@ -17,11 +17,18 @@ struct Inputs {
 struct Params {
   std::int64_t frame = 0, frames = 48;
   double start = 30, elevation = 20, margin = 1.1, fov_y = 35;
+  bool reversed_z = false;
+  Conventions conventions = Conventions::gl;
+  int subpixel_bits = 8;
   glm::ivec2 resolution{1280, 720};
 };
 struct Outputs {
   Ref<Camera> camera;
 };
+
+void check(const Params& p) { check_subpixel_bits(p.conventions, p.subpixel_bits); }
+
+std::string states(const Params& p) { return stated(p.conventions, p.reversed_z, p.subpixel_bits); }
 
 kernels::Box bounds_of(const Mesh& mesh, const Context& ctx) {
   const kernels::Box box = ctx.real([&]<class R>() {
@@ -47,6 +54,8 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
   c->eye = c->target + scene::orbit_direction(p.frame, p.frames, p.start, p.elevation) * distance;
   const auto [near_z, far_z] = scene::orbit_depths(distance, radius);
   c->near_z = near_z, c->far_z = far_z;
+  c->reversed_z = p.reversed_z;
+  c->conventions = p.conventions, c->subpixel_bits = p.subpixel_bits;
   return {std::move(c)};
 }
 
@@ -69,8 +78,16 @@ NodeType nodes::scene_orbit() {
       .param("fov_y", &Params::fov_y,
              "Angle between top and bottom; raising it moves the camera nearer: a stronger perspective.",
              {.unit = "degrees", .range = {.low = 0, .high = 180, .open_low = true, .open_high = true}})
+      .param("reversed_z", &Params::reversed_z, reversed_z_doc)
+      .knob_of_taste({"false", "true"}, reversed_z_basis)
+      .param("conventions", &Params::conventions, conventions_doc)
+      .knob_of_taste({"gl", "vulkan", "d3d"}, conventions_basis)
+      .param("subpixel_bits", &Params::subpixel_bits, subpixel_bits_doc, {.range = between(4, 8)})
+      .knob({"4", "5", "6", "7", "8"}, subpixel_bits_basis)
       .param("resolution", &Params::resolution, "Width and height of the picture.",
              {.unit = "px", .range = between(1, 65536)})
+      .check(check)
+      .states(states)
       .output("camera", &Outputs::camera, "The camera; near and far are just before and behind the mesh.");
 }
 

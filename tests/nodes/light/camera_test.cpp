@@ -52,6 +52,14 @@ TEST(LightCamera, HoldsTheMeshTightlyForAnySun) {
   }
 }
 
+TEST(LightCamera, HasTheConventionsThatAreAskedFor) {
+  const Light light{.kind = Light::Kind::directional, .direction = {0, -1, 0}};
+  const Camera c = camera_at(light, R"({"conventions": "vulkan", "subpixel_bits": 4})");
+  EXPECT_EQ(c.conventions, Conventions::vulkan);
+  EXPECT_EQ(c.subpixel_bits, 4);
+  EXPECT_THROW(camera_at(light, R"({"conventions": "d3d", "subpixel_bits": 4})"), NodeError);
+}
+
 TEST(LightCamera, OfASpotHoldsItsConeAndWhatIsInIt) {
   const Camera c = camera_at({.kind = Light::Kind::spot,
                               .direction = {0, -1, 0},

@@ -27,6 +27,15 @@ TEST(SceneOrbit, StandsInFrontAtTheStartAndToTheRightAfterAQuarter) {
   EXPECT_EQ(right->eye.x, front->eye.z);
 }
 
+TEST(SceneOrbit, HasTheConventionsThatAreAskedFor) {
+  const Mesh m = test::torus(16, 8);
+  const auto c = orbit(m, {{"conventions", "vulkan"}, {"subpixel_bits", 4}, {"reversed_z", true}});
+  EXPECT_EQ(c->conventions, Conventions::vulkan);
+  EXPECT_EQ(c->subpixel_bits, 4);
+  EXPECT_TRUE(c->reversed_z);
+  EXPECT_THROW(orbit(m, {{"conventions", "d3d"}, {"subpixel_bits", 4}}), NodeError);
+}
+
 TEST(SceneOrbit, RepeatsAfterATurn) {
   const Mesh m = test::torus(16, 8);
   for (const int frame : {-48, 48, 4800000})
