@@ -16,7 +16,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #undef FRUSTUM_HAS_MINPS
-#define FRUSTUM_HAS_MINPS (HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128)
+#define FRUSTUM_HAS_MINPS (HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR)
 
 // a < b ? a : b, for NaN and for zeros of two signs, too: what minps does, in one instruction instead of two.
 template <class V>
