@@ -306,19 +306,20 @@ void eye_on_a_plane(Trial& t) {
   const auto by_tree = [&](const dvec3& eye, PaintedOrder& order) {
     bsp::traverse(tree, faces, dvec4(eye, 1), false, [&](const bsp::Node& n) { order.add(n); });
   };
-  for (std::size_t n = t.samples(12, 300); n-- > 0;) {
+  for (std::size_t n = t.samples(32, 300); n-- > 0;) {
     const glm::uvec3& f = mesh.face[n % mesh.face.size()];
     const dvec3 p(mesh.position[f.x]), q(mesh.position[f.y]), r(mesh.position[f.z]);
     // Quarters of sides on the grid are exact: the eye is in the plane.
-    const dvec3 on = p + (q - p) * (0.25 * static_cast<double>(t.random.below(7)) - 0.25) +
-                     (r - p) * (0.25 * static_cast<double>(t.random.below(7)) - 0.25);
+    const double u = 0.25 * static_cast<double>(t.random.below(7)) - 0.25,
+                 v = 0.25 * static_cast<double>(t.random.below(7)) - 0.25;
+    const dvec3 on = p + (q - p) * u + (r - p) * v;
     for (const double z : {on.z, std::nextafter(on.z, inf), std::nextafter(on.z, -inf), on.z + 1, on.z - 1}) {
       const dvec3 eye(on.x, on.y, z);
       PaintedOrder naive(tree, faces), ours(tree, faces);
       by_float(eye, naive), by_tree(eye, ours);
       for (int k = 0; k < 30; ++k) {
-        const dvec3 to(t.random.uniform(0, 48), t.random.uniform(0, 48),
-                       far_away + t.random.uniform(-24, 24));
+        const double depth = t.random.uniform(-24, 24), y = t.random.uniform(0, 48);
+        const dvec3 to(t.random.uniform(0, 48), y, far_away + depth);
         const auto hits = hits_of(exact, eye, to - eye);
         if (!hits || hits->empty()) continue;
         t.tally(naive.seen(*hits) != hits->front().face, ours.seen(*hits) != hits->front().face,

@@ -230,7 +230,7 @@ TEST(Gltf, PrimitivesWhoseOpacityIsReadDifferentlyDoNotShareVertices) {
 
 Material material_of(Tree material, std::string* said = nullptr) {
   GltfMaker g = test::one_triangle();
-  g.document["materials"] = {std::move(material)};
+  g.document["materials"] = Tree::array({std::move(material)});
   g.document["meshes"][0]["primitives"][0]["material"] = 0;
   Context ctx;
   const Mesh m = read(g.glb(), ctx).mesh;

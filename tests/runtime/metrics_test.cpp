@@ -23,7 +23,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeri
 // One row of one plane.
 Raster row(std::initializer_list<float> values, const char* plane = "R") {
   Raster r(Frame{{0, 0, static_cast<int>(values.size()), 1}, nullptr, {{plane, PlaneKind::f32}}});
-  std::copy(values.begin(), values.end(), r.view().row<float>(0, 0, 0));
+  if (values.size() > 0) std::copy(values.begin(), values.end(), r.view().row<float>(0, 0, 0));
   return r;
 }
 

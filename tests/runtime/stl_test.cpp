@@ -131,7 +131,7 @@ TEST(Stl, AnyNumberOfThreadsGivesTheSameBytes) {
   EXPECT_EQ(m.vertices(), 4096u);  // every point of a 16 x 16 x 16 lattice, once
   const auto p = values<glm::vec3>(m, "position");
   for (std::size_t f = 0; f < facets.size(); ++f) EXPECT_EQ(p[m.triangles()[f].y], facets[f].b);
-  for (const std::size_t threads : {1, 2, 7}) {
+  for (const std::size_t threads : {1U, 2U, 7U}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     EXPECT_EQ(Buffer(std::make_shared<const Mesh>(read(bytes).mesh)).digest(),
               Buffer(std::make_shared<const Mesh>(m)).digest());

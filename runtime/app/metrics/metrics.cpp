@@ -213,7 +213,7 @@ std::vector<float> error_map(const Raster& a, const Raster& b) {
   bool numbers = false;
   for (std::size_t p = 0; p < f.planes.size(); ++p) numbers |= !is_id(p);
   std::vector<float> out(static_cast<std::size_t>(f.window.area()), 0);
-  for (std::size_t p = 0; p < f.planes.size(); ++p) {
+  for (std::size_t p = 0; p < f.planes.size() && !out.empty(); ++p) {
     const auto q = b.frame().find(f.planes[p].name);
     if ((numbers && is_id(p)) || !q) continue;
     const auto width = static_cast<std::size_t>(f.window.width());

@@ -23,7 +23,7 @@ constexpr std::size_t most_cases = 100000;
 bool is_date(const std::string& s) {
   const auto digit = [&](std::size_t i) { return s[i] >= '0' && s[i] <= '9'; };
   if (s.size() != 10 || s[4] != '-' || s[7] != '-') return false;
-  for (const std::size_t i : {0, 1, 2, 3, 5, 6, 8, 9})
+  for (const std::size_t i : {0U, 1U, 2U, 3U, 5U, 6U, 8U, 9U})
     if (!digit(i)) return false;
   const int month = std::stoi(s.substr(5, 2)), day = std::stoi(s.substr(8, 2));
   constexpr std::array<int, 12> days{31, 29, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};

@@ -213,7 +213,8 @@ class Band {
       : f_(f), counts_(pixels_of(f)), places_(f.channels.size(), std::vector<char*>(pixels_of(f))) {}
 
   static std::size_t pixels_of(const Fragments& f) {
-    return static_cast<std::size_t>(f.window.width()) * std::min(band_rows, f.window.height());
+    return static_cast<std::size_t>(f.window.width()) *
+           static_cast<std::size_t>(std::min(band_rows, f.window.height()));
   }
   static std::uint64_t bytes(const Fragments& f) {
     const auto wide = std::count_if(f.channels.begin(), f.channels.end(),

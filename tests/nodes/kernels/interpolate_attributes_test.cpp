@@ -74,8 +74,9 @@ ScreenScene<R> perspective_scene(test::Random& random, int triangles, double ext
     const double size = std::exp2(random.uniform(0, 7)), x = random.uniform(0, extent),
                  y = random.uniform(0, extent);
     const auto corner = [&] {
-      return s.vertex(x + random.uniform(-size, size), y + random.uniform(-size, size), random.uniform(),
-                      1 / random.uniform(1, 20));
+      const double w = random.uniform(1, 20), z = random.uniform();  // one after the other, by every compiler
+      const double dy = random.uniform(-size, size), dx = random.uniform(-size, size);
+      return s.vertex(x + dx, y + dy, z, 1 / w);
     };
     const std::uint32_t a = corner(), b = corner(), c = corner();
     s.face.emplace_back(a, b, c);

@@ -287,15 +287,17 @@ TEST(RasterizeLine, HasTheSameInkAtEverySlopeByDistanceAndNotByColumns) {
   const kernels::PixelRect window{0, 0, 600, 600};
   for (const double degrees : {0.0, 17.0, 45.0, 80.0, 135.0, 251.0}) {
     const auto [p, q] = turned(degrees);
-    const auto cone = steps_of([&](const auto& visit) { line::gupta_sproull(p, q, 1, window, visit); });
-    const auto area = steps_of([&](const auto& visit) { line::exact_area(p, q, 1, window, visit); });
+    const auto cone =
+        steps_of([&, p = p, q = q](const auto& visit) { line::gupta_sproull(p, q, 1, window, visit); });
+    const auto area =
+        steps_of([&, p = p, q = q](const auto& visit) { line::exact_area(p, q, 1, window, visit); });
     EXPECT_NEAR(ink(cone) / ink(area), 1, 0.02) << degrees;  // the round ends add some half a pixel each
     const double length =
         std::hypot(static_cast<double>(q.x - p.x), static_cast<double>(q.y - p.y)) / line::grid;
     EXPECT_NEAR(ink(area), length, 1e-10) << degrees;
   }
   const auto [p, q] = turned(45);
-  const auto wu = steps_of([&](const auto& visit) { line::wu(p, q, window, visit); });
+  const auto wu = steps_of([&, p = p, q = q](const auto& visit) { line::wu(p, q, window, visit); });
   EXPECT_NEAR(ink(wu) / 200, std::numbers::sqrt2 / 2, 0.01) << "a diagonal by columns is too faint";
 }
 

@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(Targets, CompositeSimd, test::every_target(), test::tar
 
 TEST_P(CompositeSimd, HasTheBytesOfItsTwin) {
   Random random(6);
-  for (const std::size_t n : {1, 2, 3, 7, 8, 64, 99}) {
+  for (const std::size_t n : {1U, 2U, 3U, 7U, 8U, 64U, 99U}) {
     std::array<std::vector<double>, 5> a, b;
     for (auto* sums : {&a, &b})
       for (std::size_t k = 0; k < 5; ++k) (*sums)[k].assign(n, k == 0 ? 1.0 : 0.0);
