@@ -59,6 +59,10 @@ TEST(SuiteHtml, ShowsWhatDiffersAndSwapsThePictures) {
     }
   })())");
   EXPECT_EQ(browser.evaluate("document.querySelectorAll('.triple canvas').length"), 3);
+  EXPECT_EQ(browser.evaluate("JSON.stringify([0, 2].map((x) => [...document.querySelector('.triple canvas')"
+                             ".getContext('2d').getImageData(x, 0, 1, 1).data]))"),
+            "[[153,153,153,255],[204,204,204,255]]")
+      << "the teapot stands on a checkerboard";
   // The two pictures change places as long as the pointer is on one of them.
   const std::string pixels =
       R"(JSON.stringify([...document.querySelectorAll('.triple canvas')].slice(0, 2).map(

@@ -37,3 +37,20 @@ export function srgbByte(linear) {
   return linear < 0.01 ? Math.round(255 * encode(linear)) : encodeTable[Math.round(linear * 4096)];
 }
 export function srgbLinear(v) { return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; }
+
+// The light of a checkerboard behind a picture, so that transparent is told from black: greys 153 and 204. A large picture has
+// some 48 squares along its longer side, a small one a square a pixel.
+const squares = [srgbLinear(153 / 255), srgbLinear(204 / 255)];
+
+// (pixel, gain) => bytes [r, g, b] of a view's colour over a checkerboard; `rgb` and `alpha` are planes of numbers, `display` says
+// that they are encoded for a screen. Encoded values were multiplied by alpha as they are.
+export function overCheckerboard(view, rgb, alpha, display) {
+  const size = Math.ceil(Math.max(view.width, view.height) / 48), straight = view.alpha === "straight";
+  const decoded = display ? (v) => srgbLinear(Math.max(0, v)) : (v) => v;
+  const light = straight ? (v, a) => decoded(v) * a : display ? (v, a) => (a > 0 ? decoded(v / a) * a : decoded(v)) : decoded;
+  return (i, gain) => {
+    const a = alpha[i], square = Math.floor(i % view.width / size) + Math.floor(i / view.width / size) & 1;
+    const back = a < 1 ? (1 - Math.max(0, a)) * squares[square] : 0;
+    return rgb.map((p) => srgbByte(gain * light(p[i], a) + back));
+  };
+}

@@ -1,6 +1,6 @@
 // Two pictures that should be alike: reference, output and difference beside each other; pointing at one shows the other.
 import {element, exact, number} from "./dom.js";
-import {idColor, srgbByte, turbo} from "./color.js";
+import {idColor, overCheckerboard, srgbByte, turbo} from "./color.js";
 import {numbers} from "./codec.js";
 
 const isDisplay = (space) => /srgb|display|rec709$|gamma/i.test(space) && !/^lin/i.test(space);
@@ -10,7 +10,7 @@ class CompareView {
   constructor(pair) {
     Object.assign(this, {pair, planes: [], gain: 1});
     const names = pair.output.planes.map((p) => p.name), rgb = ["R", "G", "B"].map((n) => names.indexOf(n));
-    this.choices = rgb.every((i) => i >= 0) ? [{name: "RGB", planes: rgb}] : [];
+    this.choices = rgb.every((i) => i >= 0) ? [{name: "RGB", planes: rgb, alpha: names.indexOf("A")}] : [];
     names.forEach((name, i) => this.choices.push({name, planes: [i]}));
     this.choice = this.choices[0];
     this.build();
@@ -66,7 +66,10 @@ class CompareView {
     const display = isDisplay(this.pair.output.color_space), top = this.top(), id = this.pair.output.planes[this.choice.planes[0]].data.kind === "u32";
     const byte = display ? (v) => Math.round(255 * Math.min(1, Math.max(0, v))) : (v) => srgbByte(v / top);
     const shown = this.choice.planes.map((p) => planes[p]), [r, g, b] = shown.length === 3 ? shown : [shown[0], shown[0], shown[0]];
-    for (let i = 0; i < width * height; ++i) image.data.set([...(id ? idColor(r[i]) : [byte(r[i]), byte(g[i]), byte(b[i])]), 255], 4 * i);
+    const over = this.choice.alpha >= 0 && this.pair.output.alpha !== "none" && planes[this.choice.alpha]
+        ? overCheckerboard(this.pair.output, shown, planes[this.choice.alpha], display) : null;
+    const color = over ? (i) => over(i, 1) : id ? (i) => idColor(r[i]) : (i) => [byte(r[i]), byte(g[i]), byte(b[i])];
+    for (let i = 0; i < width * height; ++i) image.data.set([...color(i), 255], 4 * i);
     context.putImageData(image, 0, 0);
   }
 

@@ -1,6 +1,6 @@
 // A picture: exposure, channels, false colour, marks on what is not finite, and a probe with the stored values.
 import {element, exact, number} from "./dom.js";
-import {idColor, srgbByte, srgbLinear, turbo} from "./color.js";
+import {idColor, overCheckerboard, srgbByte, srgbLinear, turbo} from "./color.js";
 import {numbers} from "./codec.js";
 import {histogram} from "./histogram.js";
 
@@ -14,7 +14,7 @@ function channelsOf(planes) {
   const prefixes = [...new Set(names.map((n) => n.match(/^(.*\.)?R$/)?.[1] ?? (/^R$/.test(n) ? "" : null)).filter((p) => p !== null))];
   for (const p of prefixes) {
     const rgb = find(`${p}R`, `${p}G`, `${p}B`);
-    if (rgb.every((i) => i >= 0)) list.push({name: `${p}RGB`, planes: rgb, mode: "color"});
+    if (rgb.every((i) => i >= 0)) list.push({name: `${p}RGB`, planes: rgb, mode: "color", alpha: names.indexOf(`${p}A`)});
   }
   for (const p of [...new Set(names.map((n) => n.match(/^(.*)\.x$/)?.[1]).filter(Boolean))]) {
     const xyz = find(`${p}.x`, `${p}.y`, `${p}.z`);
@@ -127,6 +127,10 @@ class PictureView {
     if (channel.mode === "plane" && !["R", "G", "B", "A"].includes(channel.name.replace(/^.*\./, ""))) {
       const [low, high] = rangeOf(this.statistics(channel.planes[0]));
       return (i) => { const g = Math.min(255, Math.max(0, Math.round(255 * gain * (p[0][i] - low) / (high - low)))); put(i, g, g, g); };
+    }
+    if (channel.mode === "color" && channel.alpha >= 0 && this.view.alpha !== "none") {
+      const over = overCheckerboard(this.view, p, this.planes[channel.alpha], this.display);
+      return (i) => put(i, ...over(i, gain));
     }
     const [r, g, b] = channel.mode === "color" ? p : [p[0], p[0], p[0]];
     return (i) => put(i, byte(r[i]), byte(g[i]), byte(b[i]));

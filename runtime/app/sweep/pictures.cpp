@@ -55,37 +55,53 @@ double area(const Rect& window, const Reduction& r, int x, int y) {
          std::min(r.factor, window.height() - y * r.factor);
 }
 
-// One row of three planes, as linear light over black that a display can show.
+// One row of three planes as linear light that a display can show, multiplied by alpha, and what alpha leaves
+// of what is behind it.
 class LightRows {
  public:
+  struct Row {
+    std::array<std::vector<float>, 3> rgb;
+    std::vector<float> alpha, behind;  // behind: 0 to 1; of a picture without alpha 0
+  };
+
   explicit LightRows(const Raster& raster)
       : raster_(raster),
         planes_(color_planes(raster.frame())),
-        alpha_(raster.frame().alpha == Alpha::straight ? raster.frame().find("A") : std::nullopt),
+        alpha_(raster.frame().alpha != Alpha::none ? raster.frame().find("A") : std::nullopt),
         to_linear_(to_linear_light(raster)) {}
 
-  void read(int y, std::array<std::vector<float>, 3>& rgb) const {
-    const Rect& window = raster_.frame().window;
-    const auto width = static_cast<std::size_t>(window.width());
-    for (std::size_t c = 0; c < 3; ++c) {
-      rgb[c].resize(width);
-      if (raster_.frame().planes[static_cast<std::size_t>(planes_[c])].kind == PlaneKind::f32)
-        std::copy_n(raster_.view().row<float>(planes_[c], 0, window.y0 + y), width, rgb[c].data());
-      else
-        for (std::size_t i = 0; i < width; ++i) rgb[c][i] = value(planes_[c], static_cast<int>(i), y);
-    }
-    to_linear_.apply(rgb[0].data(), rgb[1].data(), rgb[2].data(), width);
-    for (std::vector<float>& row : rgb)
+  void read(int y, Row& row) const {
+    for (std::size_t c = 0; c < 3; ++c) read_plane(planes_[c], y, row.rgb[c]);
+    if (alpha_) read_plane(*alpha_, y, row.alpha);
+    const std::size_t width = row.rgb[0].size();
+    // Encoded values were multiplied by alpha as they are: color.convert does the same.
+    const bool divided = alpha_ && raster_.frame().alpha == Alpha::premultiplied && !to_linear_.linear();
+    if (divided)
+      for (std::vector<float>& plane : row.rgb)
+        for (std::size_t i = 0; i < width; ++i)
+          if (row.alpha[i] > 0) plane[i] /= row.alpha[i];
+    to_linear_.apply(row.rgb[0].data(), row.rgb[1].data(), row.rgb[2].data(), width);
+    const bool straight = alpha_ && raster_.frame().alpha == Alpha::straight;
+    for (std::vector<float>& plane : row.rgb)
       for (std::size_t i = 0; i < width; ++i) {
-        const float v = alpha_ ? row[i] * value(*alpha_, static_cast<int>(i), y) : row[i];
-        row[i] = std::isnan(v) ? 0 : std::clamp(v, 0.0f, 1.0f);
+        const bool multiply = straight || (divided && row.alpha[i] > 0);
+        const float v = multiply ? plane[i] * row.alpha[i] : plane[i];
+        plane[i] = std::isnan(v) ? 0 : std::clamp(v, 0.0f, 1.0f);
       }
+    row.behind.assign(width, 0);
+    for (std::size_t i = 0; alpha_ && i < width; ++i)
+      row.behind[i] = row.alpha[i] < 1 ? 1 - std::max(row.alpha[i], 0.0f) : 0;
   }
 
  private:
-  float value(int plane, int x, int y) const {
+  void read_plane(int plane, int y, std::vector<float>& out) const {
     const Rect& window = raster_.frame().window;
-    return static_cast<float>(raster_.value(plane, 0, window.x0 + x, window.y0 + y));
+    out.resize(static_cast<std::size_t>(window.width()));
+    if (raster_.frame().planes[static_cast<std::size_t>(plane)].kind == PlaneKind::f32)
+      std::copy_n(raster_.view().row<float>(plane, 0, window.y0 + y), out.size(), out.data());
+    else
+      for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] = static_cast<float>(raster_.value(plane, 0, window.x0 + static_cast<int>(i), window.y0 + y));
   }
 
   const Raster& raster_;
@@ -94,7 +110,14 @@ class LightRows {
   ColorConversion to_linear_;
 };
 
-// The mean light of the pixels, encoded.
+// The light of a checkerboard behind a picture, so that transparent is told from black: the greys 153 and 204
+// of an sRGB display. A large picture has some 48 squares along its longer side, a small one a square a pixel.
+double checkerboard(const Reduction& r, int x, int y) {
+  const int square = (std::max(r.width, r.height) + 47) / 48;
+  return ((x / square + y / square) & 1) != 0 ? 0.6038 : 0.3185;
+}
+
+// The mean light of the pixels over a checkerboard, encoded.
 Encoded colors(const Raster& raster) {
   const Rect& window = raster.frame().window;
   const Reduction r = reduction_of(window);
@@ -102,16 +125,21 @@ Encoded colors(const Raster& raster) {
   Encoded out;
   out.fill(Grid(r.width, r.height));
   tbb::parallel_for(0, r.height, [&](int y) {
-    std::array<std::vector<float>, 3> rgb;
+    LightRows::Row row;
+    std::vector<double> behind(static_cast<std::size_t>(r.width));
     for (int v = y * r.factor; v < std::min(window.height(), (y + 1) * r.factor); ++v) {
-      light.read(v, rgb);
-      for (std::size_t c = 0; c < 3; ++c)
-        for (int x = 0; x < window.width(); ++x)
-          out[c].at(x / r.factor, y) += static_cast<double>(rgb[c][static_cast<std::size_t>(x)]);
+      light.read(v, row);
+      for (int x = 0; x < window.width(); ++x) {
+        const auto i = static_cast<std::size_t>(x);
+        for (std::size_t c = 0; c < 3; ++c) out[c].at(x / r.factor, y) += static_cast<double>(row.rgb[c][i]);
+        behind[static_cast<std::size_t>(x / r.factor)] += static_cast<double>(row.behind[i]);
+      }
     }
-    for (Grid& g : out)
-      for (int x = 0; x < r.width; ++x)
-        g.at(x, y) = kernels::encode(kernels::Curve::srgb, g.at(x, y) / area(window, r, x, y));
+    for (int x = 0; x < r.width; ++x) {
+      const double back = behind[static_cast<std::size_t>(x)] * checkerboard(r, x, y);
+      for (Grid& g : out)
+        g.at(x, y) = kernels::encode(kernels::Curve::srgb, (g.at(x, y) + back) / area(window, r, x, y));
+    }
   });
   return out;
 }

@@ -11,8 +11,9 @@ namespace frustum {
 constexpr int thumbnail_width = 320;  // pixels at most
 
 // Writes NAME.png and, with a reference, NAME.error.png (black is no error, white the largest of the
-// picture), below `folder`. Colours as an sRGB display shows them, ids in colours of their own, other numbers
-// in grey from least to largest. Buffers that are no pixels write nothing. Throws WorldError.
+// picture), below `folder`. Colours as an sRGB display shows them, over a checkerboard where
+// alpha lets it through, ids in colours of their own, other numbers in grey from least to largest. Buffers that
+// are no pixels write nothing. Throws WorldError.
 void save_pictures(const std::filesystem::path& folder, const std::string& name, const Buffer& buffer,
                    const Buffer* reference);
 
