@@ -66,10 +66,12 @@ Json cell_value(const std::string& text) {
 
 Raster one_sample(const Raster& raster, int sample) {
   const Frame& frame = raster.frame();
-  if (!frame.pattern) return raster;
   if (sample < 0 || sample >= frame.samples())
-    throw NodeError("out_of_range",
-                    fmt::format("sample {}: there are {} in a pixel", sample, frame.samples()));
+    throw NodeError("out_of_range", frame.samples() == 1
+                                        ? fmt::format("sample {}: a pixel has one, number 0", sample)
+                                        : fmt::format("sample {}: a pixel has {}, from 0 to {}", sample,
+                                                      frame.samples(), frame.samples() - 1));
+  if (!frame.pattern) return raster;
   Frame single = frame;
   single.pattern = nullptr;
   Raster out(single);
@@ -133,6 +135,14 @@ Json csv_table(const std::string& path) {
     }
   }
   return out;
+}
+
+std::vector<std::string> forms_of(const BufferType& kind, bool whole) {
+  std::vector<std::string> forms =
+      kind.is_pixels() && !whole ? writable_extensions() : std::vector<std::string>();
+  for (std::string& form : saved_as(kind))
+    if (std::find(forms.begin(), forms.end(), form) == forms.end()) forms.push_back(std::move(form));
+  return forms;
 }
 
 Context saving_context(const Buffer& buffer, const CancelFlag* cancel, std::uint64_t memory) {

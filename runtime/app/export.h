@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace frustum {
 
@@ -31,6 +32,10 @@ Buffer load_buffer(const std::string& path);
 // the like and the rest are texts. Throws NodeError("malformed_file") for a row of another length or an open
 // quote.
 Json csv_table(const std::string& path);
+
+// The extensions of the files that save_buffer() makes of a kind of buffer; `whole`: of those alone that hold all of it,
+// every sample of its pixels too.
+std::vector<std::string> forms_of(const BufferType& kind, bool whole);
 
 // For saving the buffer: polls `cancel` (may be null), and refuses what together with the buffer is more than `memory`
 // bytes (0: no limit).

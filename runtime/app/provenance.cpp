@@ -90,8 +90,11 @@ struct Finder {
   Diagnostics& problems;
   RunResult::End& end;
 
-  std::nullopt_t fail(std::string code, std::string message) {
-    problems.add({.code = std::move(code), .pointer = "", .message = std::move(message), .file = graph.file});
+  std::nullopt_t fail(PortRef port, std::string code, std::string message, std::string expected,
+                      std::vector<std::string> suggestions = {}) {
+    Diagnostic d = at_port(graph, port, std::move(code), std::move(message));
+    d.expected = std::move(expected), d.suggestions = std::move(suggestions);
+    problems.add(std::move(d));
     return std::nullopt;
   }
 
@@ -134,17 +137,23 @@ struct Finder {
   }
 
   std::optional<Provenance> find(PortRef port, int x, int y) {
-    if (!is_pixels(graph.port(port))) return fail("not_pixels", graph.name(port) + " holds no pixels");
+    if (!is_pixels(graph.port(port)))
+      return fail(port, "not_pixels", graph.name(port) + " holds no pixels", "a port of pixels",
+                  near_ports(graph, port, [](const BufferType& t) { return t.is_pixels(); }));
     options.region = Rect{x, y, x + 1, y + 1};
     const auto pixels = run(pixels_above(graph, port));
     if (!pixels) return std::nullopt;
     const auto ids = first_ids(graph, *pixels, port);
-    if (!ids) return fail("no_ids", "no port above " + graph.name(port) + " says which face a sample sees");
+    if (!ids)
+      return fail(port, "no_ids", "no port above " + graph.name(port) + " says which face a sample sees",
+                  "a port below one with a plane 'id'");
     const Raster& raster = *raster_of(pixels->at(*ids));
     if (!raster.frame().window.contains(x, y))
-      return fail("outside_window", fmt::format("pixel {},{} lies outside the picture", x, y));
+      return fail(port, "outside_window", fmt::format("pixel {},{} lies outside the picture", x, y),
+                  "a pixel of the picture");
     const auto rasterized = feeding(graph, ids->node, is_mesh);
-    if (rasterized.empty()) return fail("no_mesh", "no mesh feeds " + graph.nodes[ids->node].id);
+    if (rasterized.empty())
+      return fail(*ids, "no_mesh", "no mesh feeds " + graph.nodes[ids->node].id, "a mesh that is drawn");
     auto chain = mesh_chain(rasterized.front());
     options.region.reset();
     const auto meshes = run(chain);

@@ -3,13 +3,17 @@
 #include "nodes/all_nodes.h"
 #include "runtime/app/export.h"
 #include "runtime/app/files.h"
+#include "runtime/core/error.h"
+#include "runtime/core/missing_file.h"
 #include "runtime/io/buffer_files.h"
 #include "runtime/io/color.h"
 #include "runtime/io/image_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <unordered_set>
 
 namespace frustum {
@@ -17,6 +21,26 @@ namespace {
 
 void report_unknown(const Graph& graph, std::string_view address, Diagnostics& problems) {
   std::vector<std::string> known = graph.addresses();
+  // Where the node is right its ports are what is meant, however far their names are.
+  const auto node = std::find_if(graph.nodes.begin(), graph.nodes.end(), [&](const GraphNode& n) {
+    return address.size() > n.id.size() && address.starts_with(n.id) && address[n.id.size()] == '.';
+  });
+  if (node != graph.nodes.end()) {
+    const std::string_view port = address.substr(node->id.size() + 1);
+    std::vector<std::string> ports;
+    for (const Port& p : node->type->outputs) ports.push_back(fmt::format("{}.{}", node->id, p.name));
+    std::vector<std::string> near = nearest_names(address, ports);
+    problems.add({.code = "unknown_address",
+                  .pointer = node->place.pointer,
+                  .message = fmt::format("'{}' ({}) has no output '{}'", node->id, node->type->name, port),
+                  .expected = fmt::format("one of: {}", fmt::join(ports, ", ")),
+                  .got = std::string(address),
+                  .suggestions = near.empty() ? std::move(ports) : std::move(near),
+                  .file = node->place.file,
+                  .line = node->place.line,
+                  .column = node->place.column});
+    return;
+  }
   problems.add({.code = "unknown_address",
                 .pointer = "",
                 .message = fmt::format("'{}' is neither an output nor a port of this graph", address),
@@ -48,7 +72,15 @@ Loaded Session::load(const std::string& path, LoadOptions options) const {
   if (options.library_folders.empty()) options.library_folders = library_folders(path);
   if (!options.to_linear) options.to_linear = to_linear_rec709;
   if (!options.saved_as) options.saved_as = saved_as;
-  return load_graph(path, registry_, options);
+  options.look_for_files = true;
+  try {
+    return load_graph(path, registry_, options);
+  } catch (const WorldError& e) {
+    if (why_missing(path, path).empty()) throw;
+    const auto near = near_files(path, path);
+    if (near.empty()) throw;
+    throw WorldError(e.code, fmt::format("{}; did you mean '{}'?", e.what(), near.front()));
+  }
 }
 
 void Session::use_disk(const std::string& folder, std::uint64_t limit_bytes, bool check) {
@@ -112,6 +144,34 @@ std::optional<PortRef> port_of(const Graph& graph, std::string_view address, Dia
   }
   report_unknown(graph, address, problems);
   return std::nullopt;
+}
+
+Diagnostic at_port(const Graph& graph, PortRef port, std::string code, std::string message) {
+  const SourcePlace& place = graph.nodes[port.node].place;
+  return {.code = std::move(code),
+          .pointer = place.pointer,
+          .message = std::move(message),
+          .file = place.file,
+          .line = place.line,
+          .column = place.column};
+}
+
+std::vector<std::string> near_ports(const Graph& graph, PortRef port, bool (*is_meant)(const BufferType&)) {
+  const auto may_carry = [&](const Port& p) {
+    return std::any_of(p.types.begin(), p.types.end(), [&](const BufferType* t) { return is_meant(*t); });
+  };
+  std::map<std::string, std::string> ports;  // of each node the first that may
+  std::vector<std::string> ids;
+  for (const GraphNode& node : graph.nodes) {
+    const auto& outputs = node.type->outputs;
+    const auto found = std::find_if(outputs.begin(), outputs.end(), may_carry);
+    if (found == outputs.end()) continue;
+    ids.push_back(node.id);
+    ports[node.id] = fmt::format("{}.{}", node.id, found->name);
+  }
+  std::vector<std::string> near = nearest_names(graph.nodes[port.node].id, ids);
+  for (std::string& n : near) n = ports.at(n);
+  return near;
 }
 
 }  // namespace frustum

@@ -55,4 +55,10 @@ Demand demand_of(const Graph&, std::span<const std::string> wanted, Diagnostics&
 // reported.
 std::optional<PortRef> port_of(const Graph&, std::string_view address, Diagnostics& problems);
 
+// What is wrong with a port, at its node.
+Diagnostic at_port(const Graph&, PortRef, std::string code, std::string message);
+
+// Ports that may carry what `is_meant`, of nodes whose names are near that of the node of `port` or its own.
+std::vector<std::string> near_ports(const Graph&, PortRef port, bool (*is_meant)(const BufferType&));
+
 }  // namespace frustum

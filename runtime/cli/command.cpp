@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 
 namespace frustum::cli {
 
@@ -102,7 +104,11 @@ void apply(const RunArguments& args, RunOptions& options) {
     const auto v = integers("--region", args.region, 4);
     if (v[2] <= 0 || v[3] <= 0)
       throw UsageError(fmt::format("--region {}: width and height are above 0", args.region));
-    options.region = Rect{v[0], v[1], v[0] + v[2], v[1] + v[3]};
+    const auto end = [](int from, int size) {  // beyond the last pixel that there can be is at it
+      return static_cast<int>(
+          std::min<std::int64_t>(std::int64_t{from} + size, std::numeric_limits<int>::max()));
+    };
+    options.region = Rect{v[0], v[1], end(v[0], v[2]), end(v[1], v[3])};
   }
   for (const auto& [target, name] : choices(Simd{}))
     if (args.simd == name && !use_simd(target))
@@ -115,15 +121,11 @@ void check_region(const Graph& graph, const RunOptions& options, const RunResult
   for (const auto& [port, buffer] : result.buffers) {
     if (!buffer.type().is_pixels() || !buffer.type().raster(buffer.data()).frame().window.empty()) continue;
     const Rect& r = *options.region;
-    const SourcePlace& place = graph.nodes[port.node].place;
-    problems.add({.code = "empty_region",
-                  .pointer = place.pointer,
-                  .message = fmt::format("{} has no pixels in the region {},{},{},{}", graph.name(port), r.x0,
-                                         r.y0, r.width(), r.height()),
-                  .expected = "a region that meets the picture",
-                  .file = place.file,
-                  .line = place.line,
-                  .column = place.column});
+    Diagnostic d = at_port(graph, port, "empty_region",
+                           fmt::format("{} has no pixels in the region {},{},{},{}", graph.name(port), r.x0,
+                                       r.y0, r.width(), r.height()));
+    d.expected = "a region that meets the picture";
+    problems.add(std::move(d));
   }
 }
 

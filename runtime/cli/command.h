@@ -53,6 +53,12 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// A mistake that is found while a command goes on, with its place and what was meant: exit 2.
+struct Mistake : std::runtime_error {
+  Diagnostic problem;
+  explicit Mistake(Diagnostic d) : std::runtime_error(d.message), problem(std::move(d)) {}
+};
+
 // ----- a graph and the values set in it
 struct GraphArguments {
   std::string path;

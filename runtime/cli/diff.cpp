@@ -17,6 +17,16 @@ struct Arguments {
   std::vector<std::string> metrics;
 };
 
+// What is wrong with a file names it.
+template <class Read>
+auto read(const std::string& path, Read reader) {
+  try {
+    return reader(path);
+  } catch (const NodeError& e) {
+    throw Mistake({.code = e.code, .pointer = "", .message = e.what(), .file = path});
+  }
+}
+
 Measured measure_files(const Arguments& args, const std::vector<std::string>& names) {
   const auto is_table = [](const std::string& path) { return path.ends_with(".csv"); };
   if (is_table(args.a) != is_table(args.b))
@@ -24,8 +34,8 @@ Measured measure_files(const Arguments& args, const std::vector<std::string>& na
         "not_comparable",
         fmt::format("{} is a table and {} is none: frustum inspect --save makes a .csv of any buffer",
                     is_table(args.a) ? args.a : args.b, is_table(args.a) ? args.b : args.a));
-  if (!is_table(args.a)) return measure(load_buffer(args.a), load_buffer(args.b), names);
-  return measure(compare_tables(csv_table(args.a), csv_table(args.b)), names);
+  if (!is_table(args.a)) return measure(read(args.a, load_buffer), read(args.b, load_buffer), names);
+  return measure(compare_tables(read(args.a, csv_table), read(args.b, csv_table)), names);
 }
 
 // Without any bound, the files have to be identical.

@@ -1,17 +1,22 @@
 // frustum inspect GRAPH NODE.PORT: the buffer between two nodes, its statistics, values, and where a pixel
 // came from.
 #include "runtime/app/export.h"
+#include "runtime/app/files.h"
 #include "runtime/app/provenance.h"
 #include "runtime/buffers/fragments.h"
 #include "runtime/cli/command.h"
 #include "runtime/cli/inspect_text.h"
 #include "runtime/core/text.h"
+#include "runtime/graph/output_format.h"
 #include "runtime/graph/own_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -29,22 +34,40 @@ struct Arguments {
   std::optional<int> sample;
 };
 
-Json table_json(const Buffer& buffer, std::size_t first, std::size_t count) {
+// The port that is looked at, and what is wrong with looking at it in some way.
+struct Looked {
+  const Graph& graph;
+  PortRef port;
+
+  std::string name() const { return graph.name(port); }
+  [[noreturn]] void wrong(std::string code, std::string message, std::string expected, std::string got = {},
+                          std::vector<std::string> suggestions = {}) const {
+    Diagnostic d = at_port(graph, port, std::move(code), std::move(message));
+    d.expected = std::move(expected), d.got = std::move(got), d.suggestions = std::move(suggestions);
+    throw Mistake(std::move(d));
+  }
+};
+
+Json table_json(const Looked& at, const Buffer& buffer, std::size_t first, std::size_t count) {
+  const auto has_table = [](const BufferType& t) { return t.table != nullptr; };
   const Json table =
-      buffer.type().table != nullptr ? buffer.type().table(buffer.data(), first, count) : Json(nullptr);
-  if (table.is_null()) throw NodeError("no_table", fmt::format("a {} has no table form", buffer.type().name));
+      has_table(buffer.type()) ? buffer.type().table(buffer.data(), first, count) : Json(nullptr);
+  if (table.is_null())
+    at.wrong("no_table", fmt::format("{} is a {}, which has no table form", at.name(), buffer.type().name),
+             "a port whose buffer has rows", std::string(buffer.type().name),
+             near_ports(at.graph, at.port, has_table));
   return table;
 }
 
 // {"samples": [{"sample": 0, "R": ..., "G": ...}]} with every plane: the rows of the buffer's table that
 // are this pixel.
-Json pixel_json(const Buffer& buffer, int x, int y) {
+Json pixel_json(const Looked& at, const Buffer& buffer, int x, int y) {
   const Frame& frame = buffer.type().raster(buffer.data()).frame();
   const auto count = static_cast<std::size_t>(frame.samples()), planes = frame.planes.size();
   const auto row = static_cast<std::size_t>(y - frame.window.y0),
              column = static_cast<std::size_t>(x - frame.window.x0);
   const Json table =
-      table_json(buffer, (row * static_cast<std::size_t>(frame.window.width()) + column) * count, count);
+      table_json(at, buffer, (row * static_cast<std::size_t>(frame.window.width()) + column) * count, count);
   Json samples = Json::array();
   for (const Json& cells : table["rows"]) {
     Json sample = {{"sample", samples.size()}};
@@ -86,47 +109,87 @@ int show_provenance(Session& session, const Graph& graph, PortRef port, const Ar
 }
 
 // The fragments of all samples of a pixel: rows of the buffer's table.
-Json pixel_lists(const Buffer& buffer, const Fragments& lists, int x, int y) {
+Json pixel_lists(const Looked& at, const Buffer& buffer, const Fragments& lists, int x, int y) {
   const auto [begin, end] = lists.of_pixel(x, y);
-  return table_json(buffer, begin, end - begin);
+  return table_json(at, buffer, begin, end - begin);
 }
 
-Rect window_of(const Buffer& buffer, const std::string& port) {
+bool has_pixels(const BufferType& t) { return t.is_pixels() || &t == &buffer_type<Fragments>(); }
+
+Rect window_of(const Looked& at, const Buffer& buffer) {
   if (const auto lists = buffer.as<Fragments>()) return lists->window;
-  if (!buffer.type().is_pixels()) throw NodeError("not_pixels", fmt::format("{} holds no pixels", port));
+  if (!buffer.type().is_pixels())
+    at.wrong("not_pixels", at.name() + " holds no pixels", "a port of pixels",
+             std::string(buffer.type().name), near_ports(at.graph, at.port, has_pixels));
   return buffer.type().raster(buffer.data()).frame().window;
+}
+
+std::string show_pixel(const Looked& at, const Buffer& buffer, const std::string& pixel, Json& out) {
+  const auto xy = integers("--pixel", pixel, 2);
+  const Rect window = window_of(at, buffer);
+  if (!window.contains(xy[0], xy[1]))
+    at.wrong("outside_window",
+             fmt::format("pixel {},{} lies outside the picture of {}", xy[0], xy[1], at.name()),
+             window.empty() ? "a picture with pixels"
+                            : fmt::format("x from {} to {}, y from {} to {}", window.x0, window.x1 - 1,
+                                          window.y0, window.y1 - 1),
+             pixel);
+  if (const auto lists = buffer.as<Fragments>()) {
+    out = pixel_lists(at, buffer, *lists, xy[0], xy[1]);
+    return table_text(out, lists->of_pixel(xy[0], xy[1]).begin);
+  }
+  out = pixel_json(at, buffer, xy[0], xy[1]);
+  return samples_text(out["samples"]);
+}
+
+// ----- the file of --save
+
+// Known before anything runs, where the port carries one kind of buffer.
+void check_format(const BufferType& type, const Arguments& args) {
+  const std::string extension = extension_of(args.save);
+  const std::vector<std::string> forms = forms_of(type, false);
+  const std::vector<std::string> whole = forms_of(type, true);
+  if (std::find(forms.begin(), forms.end(), extension) == forms.end()) {
+    std::vector<std::string> near = nearest_names(extension, forms);
+    for (std::string& n : near) n = std::filesystem::path(args.save).replace_extension(n).string();
+    throw Mistake({.code = "unknown_format",
+                   .pointer = "",
+                   .message = fmt::format("--save {}: a buffer of kind {} is saved as {}", args.save,
+                                          type.name, fmt::join(forms, ", ")),
+                   .expected = fmt::format("one of: {}", fmt::join(forms, ", ")),
+                   .got = extension,
+                   .suggestions = std::move(near),
+                   .file = args.save});
+  }
+  if (args.sample && std::find(whole.begin(), whole.end(), extension) != whole.end())
+    throw UsageError(fmt::format("--sample {}: {} gets the whole buffer", *args.sample, args.save));
 }
 
 // What is told of a file names it.
 void save(const Buffer& buffer, const Arguments& args, Context& ctx, Diagnostics& warnings) {
-  save_buffer(buffer, args.save, ctx, args.sample, [&](std::string_view code, const std::string& message) {
-    const bool named = message.starts_with(args.save);
-    warnings.add({.code = std::string(code),
-                  .severity = Severity::warning,
-                  .pointer = "",
-                  .message = named ? message : fmt::format("{}: {}", args.save, message)});
-  });
+  check_format(buffer.type(), args);
+  try {
+    save_buffer(buffer, args.save, ctx, args.sample, [&](std::string_view code, const std::string& message) {
+      const bool named = message.starts_with(args.save);
+      warnings.add({.code = std::string(code),
+                    .severity = Severity::warning,
+                    .pointer = "",
+                    .message = named ? message : fmt::format("{}: {}", args.save, message),
+                    .file = args.save});
+    });
+  } catch (const NodeError& e) {
+    throw Mistake({.code = e.code, .pointer = "", .message = e.what(), .file = args.save});
+  }
 }
 
-int show_buffer(const Graph& graph, PortRef port, const Buffer& buffer, const Arguments& args, Context ctx,
+int show_buffer(const Looked& at, const Buffer& buffer, const Arguments& args, Context ctx,
                 Diagnostics& warnings, bool json) {
-  Json out = header_json(graph.name(port), buffer);
+  Json out = header_json(at.name(), buffer);
   ctx.poll();
   std::string text;
-  if (!args.pixel.empty()) {
-    const auto at = integers("--pixel", args.pixel, 2);
-    if (!window_of(buffer, graph.name(port)).contains(at[0], at[1]))
-      throw NodeError("outside_window", fmt::format("pixel {},{} lies outside the picture", at[0], at[1]));
-    if (const auto lists = buffer.as<Fragments>()) {
-      out["pixel"] = pixel_lists(buffer, *lists, at[0], at[1]);
-      text += table_text(out["pixel"], lists->of_pixel(at[0], at[1]).begin);
-    } else {
-      out["pixel"] = pixel_json(buffer, at[0], at[1]);
-      text += samples_text(out["pixel"]["samples"]);
-    }
-  }
+  if (!args.pixel.empty()) text += show_pixel(at, buffer, args.pixel, out["pixel"]);
   if (args.table) {
-    out["table"] = table_json(buffer, args.first, args.rows);
+    out["table"] = table_json(at, buffer, args.first, args.rows);
     text += table_text(out["table"], args.first);
   }
   if (text.empty()) {
@@ -153,6 +216,9 @@ int inspect(const Arguments& args, bool json) {
   const auto port = port_of(*graph, args.port, problems);
   if (!port) return fail(problems, json);
   if (const auto d = overwriting(*graph, args.save, "--save")) return fail(*d, json);
+  const auto& kinds = graph->port(*port).types;
+  if (!args.save.empty() && kinds.size() == 1) check_format(*kinds.front(), args);
+  if (!args.save.empty()) require_writable(args.save);
   RunOptions options;
   apply(args.run, options);
   options.cancel = &cancel_flag();
@@ -166,7 +232,7 @@ int inspect(const Arguments& args, bool json) {
   if (warnings.has_errors() && result.end == RunResult::End::done) return fail(warnings, json);
   if (result.end != RunResult::End::done) return fail(warnings, json, static_cast<Exit>(exit_code(result)));
   const Buffer& buffer = result.buffers.at(*port);
-  return show_buffer(*graph, *port, buffer, args, saving_context(buffer, options.cancel, options.memory),
+  return show_buffer({*graph, *port}, buffer, args, saving_context(buffer, options.cancel, options.memory),
                      warnings, json);
 }
 

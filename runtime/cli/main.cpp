@@ -10,6 +10,7 @@
 
 #include <cstring>
 #include <new>
+#include <optional>
 
 namespace frustum::cli {
 namespace {
@@ -79,6 +80,16 @@ int unexpected(const CLI::App& app, bool json) {
                      nearest_names(name, option_names(command)), help, json);
 }
 
+// An option or argument that was given as an empty text: none of them has a meaning for it, and to take it as not given would
+// be a silent default.
+std::optional<std::string> given_empty(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands())
+    for (const CLI::Option* o : command->get_options())
+      for (const std::string& value : o->results())
+        if (value.empty()) return o->get_name();
+  return std::nullopt;
+}
+
 std::string help_of(const CLI::App& app) {
   const auto commands = app.get_subcommands();
   return commands.empty() ? "frustum --help" : fmt::format("frustum {} --help", commands.front()->get_name());
@@ -89,6 +100,8 @@ int run_body(const CLI::App& app, const Invocation& chosen) {
     return chosen.body();
   } catch (const UsageError& e) {
     return usage_error(e.what(), {}, help_of(app), chosen.json);
+  } catch (const Mistake& e) {
+    return fail(e.problem, chosen.json);
   } catch (const WorldError& e) {
     return world_error(e.code, e.what(), chosen.json);
   } catch (const NodeError& e) {
@@ -125,6 +138,7 @@ int main_(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
+    if (app.get_subcommands().empty() && !app.remaining().empty()) return unexpected(app, chosen.json);
     print(app.help() + "\n");  // of the command that was named, if one was
     return done;
   } catch (const CLI::CallForVersion& e) {
@@ -144,6 +158,8 @@ int main_(int argc, char** argv) {
     if (commands.empty() && !app.remaining().empty()) return unexpected(app, chosen.json);
     return usage_error(e.what(), {}, help_of(app), chosen.json);
   }
+  if (const auto name = given_empty(app))
+    return usage_error(fmt::format("{}: the text is empty", *name), {}, help_of(app), chosen.json);
   return run_body(app, chosen);
 }
 

@@ -24,6 +24,7 @@ int report_run(const Arguments& args, bool json) {
   const auto graph = load_or_report(session, args.graph, json, load_options(args.graph));
   if (!graph) return bad_input;
   if (const auto d = overwriting(*graph, args.file, "--output")) return fail(*d, json);
+  require_writable(args.file);  // known before minutes of work
   ReportOptions options = args.options;
   options.settings = args.graph.settings;
   if (!args.graph.precision.empty()) options.settings.push_back("precision=" + args.graph.precision);

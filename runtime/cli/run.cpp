@@ -242,6 +242,7 @@ void print_json(const Outcome& o, const Listeners& l, std::chrono::nanoseconds t
 int run(const Arguments& args, bool json) {
   const auto began = std::chrono::steady_clock::now();
   Session session;
+  if (!args.trace.empty()) require_writable(args.trace);
   const bool keep = open_cache(args.cache, session) && args.repeat == 0;
   Listeners listeners;
   attach(listeners, args);

@@ -1,5 +1,7 @@
 #include "runtime/graph/document.h"
 
+#include "runtime/core/error.h"
+#include "runtime/core/missing_file.h"
 #include "runtime/core/read_file.h"
 #include "runtime/graph/document_reader.h"
 
@@ -167,14 +169,11 @@ bool Documents::too_deep(std::size_t levels, const std::string& name, const Sour
 namespace {
 
 // Why a graph used as a node is not there.
-std::string why_missing(const std::string& name, const std::string& path, bool library) {
-  if (library && name.find_first_of("/.", library_prefix.size()) != std::string::npos)
+std::string why_no_graph(const std::string& name, const std::string& path, bool library) {
+  if (!library) return why_missing(path, name);
+  if (name.find_first_of("/.", library_prefix.size()) != std::string::npos)
     return fmt::format("'{}' is not the name of a library graph: it has neither slashes nor dots", name);
-  if (library) return fmt::format("the library has no graph '{}'", name);
-  std::error_code error;
-  if (fs::is_directory(path, error)) return fmt::format("'{}' is a folder, not a graph file", name);
-  if (fs::exists(path, error)) return fmt::format("'{}' is not a regular file", name);
-  return fmt::format("there is no file '{}'", name);
+  return path.empty() ? fmt::format("the library has no graph '{}'", name) : "";
 }
 
 }  // namespace
@@ -184,19 +183,22 @@ std::shared_ptr<const Document> Documents::open(const std::string& name, const s
   const bool library = name.starts_with(library_prefix);
   const std::string path = library ? find_library(std::string_view(name).substr(library_prefix.size()))
                                    : (fs::path(folder) / name).lexically_normal().string();
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) {
-    const std::vector<std::string> near =
-        library ? suggestions(name, [&] { return library_names(); }) : std::vector<std::string>{};
+  if (std::string why = why_no_graph(name, path, library); !why.empty()) {
+    std::vector<std::string> near;
+    if (library)
+      near = suggestions(name, [&] { return library_names(); });
+    else if (problems_.size() < most_looked_beside)
+      near = near_files(path, name);
     report(problems_, user,
            {.code = "missing_file",
             .pointer = pointer,
-            .message = why_missing(name, path, library),
+            .message = std::move(why),
             .expected = library ? "a graph of the library" : "a graph file",
             .got = name,
-            .suggestions = near});
+            .suggestions = std::move(near)});
     return nullptr;
   }
+  std::error_code error;
   const std::string canonical = fs::weakly_canonical(path, error).string();
   if (const auto known = opened_.find(canonical); known != opened_.end()) {
     const bool deep = known->second != nullptr && too_deep(known->second->levels, name, user, pointer);
@@ -221,14 +223,10 @@ std::shared_ptr<const Document> Documents::open(const std::string& name, const s
   std::string text;
   try {
     text = read_file(path);
-  } catch (const WorldError& e) {
-    report(problems_, user,
-           {.code = "missing_file",
-            .pointer = pointer,
-            .message = e.what(),
-            .expected = "a graph file",
-            .got = name});
-    return nullptr;
+  } catch (const WorldError& e) {  // it is there: nothing is wrong with what the user wrote
+    const TextPlace at = user.value_place(pointer);
+    throw WorldError(e.code,
+                     fmt::format("{}:{}:{} {}: {}", user.file(), at.line, at.column, pointer, e.what()));
   }
   auto doc = read(std::move(text), path);
   opened_.emplace(canonical, doc);

@@ -74,6 +74,7 @@ struct FlatParams {
     std::string name;
     const SourceText* text;
     std::string pointer;
+    std::string setting = {};  // "samples=4" where the value comes from --set samples=4
   };
   std::shared_ptr<void> values;
   std::vector<Place> places;

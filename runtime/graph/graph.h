@@ -27,6 +27,7 @@ struct SourcePlace {
   std::string file;     // as the user would name it
   std::string pointer;  // RFC 6901
   int line = 0, column = 0;
+  std::string setting = {};  // "samples=4" where the value comes from --set samples=4
 };
 
 struct GraphNode {

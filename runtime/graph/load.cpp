@@ -41,9 +41,16 @@ class Builder {
   }
 
  private:
-  SourcePlace place_of(const SourceText& text, const std::string& pointer) const {
+  // Of a node or an output: where its name stands.
+  static SourcePlace place_of(const SourceText& text, const std::string& pointer) {
     const TextPlace at = text.key_place(pointer);
     return {text.file(), pointer, at.line, at.column};
+  }
+
+  static SourcePlace value_place(const SourceText& text, const std::string& pointer,
+                                 const std::string& setting = {}) {
+    const TextPlace at = text.value_place(pointer);
+    return {text.file(), pointer, at.line, at.column, setting};
   }
 
   void add_node(std::size_t i) {
@@ -56,11 +63,11 @@ class Builder {
                    .place = place_of(*flat.instance->document->text, flat.node->pointer),
                    .parts = {}};
     for (const FlatParams::Place& p : flat.params.places)
-      node.parts.emplace_back(at_param(p.name), place_of(*p.text, p.pointer));
+      node.parts.emplace_back(at_param(p.name), value_place(*p.text, p.pointer, p.setting));
     for (std::size_t p = 0; p < flat.inputs.size(); ++p) {
       const std::string part = at_input(flat.type().inputs[p].name);
       if (!flat.inputs[p].empty())
-        node.parts.emplace_back(part, place_of(*flat.instance->document->text, flat.node->pointer + part));
+        node.parts.emplace_back(part, value_place(*flat.instance->document->text, flat.node->pointer + part));
       for (const Edge& edge : flat.inputs[p])
         if (auto source = source_of(edge, flat.type().inputs[p]))
           node.inputs[p].push_back(std::move(*source));
@@ -225,12 +232,20 @@ void tidy(Diagnostics& problems, const std::string& top) {
   std::set<Place> not_finite;
   for (const Diagnostic& d : problems.list())
     if (d.code == "not_finite") not_finite.emplace(d.file, d.pointer);
+  // What is said of a parameter follows from the numbers in it.
+  const auto holds_one = [&](const Diagnostic& d) {
+    if (d.pointer.find("/params/") == std::string::npos) return false;
+    const auto in = not_finite.lower_bound({d.file, d.pointer + "/"});
+    return in != not_finite.end() && std::get<0>(*in) == d.file &&
+           std::get<1>(*in).starts_with(d.pointer + "/");
+  };
   const auto follows = [&](const Diagnostic& d) {
     if (d.code == "not_finite") return false;
     const auto here = [&](const Related& r) {
       return not_finite.contains({r.file.empty() ? d.file : r.file, r.pointer});
     };
-    return not_finite.contains({d.file, d.pointer}) || std::any_of(d.related.begin(), d.related.end(), here);
+    return not_finite.contains({d.file, d.pointer}) || holds_one(d) ||
+           std::any_of(d.related.begin(), d.related.end(), here);
   };
   auto& list = problems.list();
   if (!not_finite.empty()) std::erase_if(list, follows);

@@ -26,6 +26,7 @@ struct LoadOptions {
   ParamReader::ToLinear to_linear = {};           // colours written in a named space
   SavedAs saved_as = {};                          // which outputs are no pictures; empty: none
   std::optional<int> frame = {};                  // sets the graph parameter "frame", where it has one
+  bool look_for_files = false;                    // whether files that parameters name have to be there
 };
 
 struct Loaded {

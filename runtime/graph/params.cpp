@@ -1,4 +1,5 @@
 // Values of parameters: where they come from, what "$" stands for, and how problems in them find their place.
+#include "runtime/core/missing_file.h"
 #include "runtime/graph/flatten.h"
 
 #include <fmt/format.h>
@@ -174,9 +175,11 @@ class NodeParams {
       if (!found.value) continue;
       read_one(field, found, out.values.get());
       out.places.push_back(place(field.name, found));
-      if (node_.type->check) given_.push_back({&field, std::move(found)});
+      given_.push_back({&field, std::move(found)});
     }
     if (whole_ && node_.type->check) check(out.values.get());
+    if (options_.look_for_files)
+      for (const Given& given : given_) look_for_files(given, out.values.get());
     return out;
   }
 
@@ -187,8 +190,9 @@ class NodeParams {
   }
 
   FlatParams::Place place(const std::string& name, const FoundValue& found) const {
+    const bool set = found.giver != nullptr && found.giver->text == nullptr;
     return {name, found.elsewhere() ? found.giver->text : instance_.document->text.get(),
-            pointer_to(name, found)};
+            pointer_to(name, found), set ? found.giver->setting : ""};
   }
 
   // A path is relative to the file that wrote it; one inside a larger value is taken with that value.
@@ -211,6 +215,23 @@ class NodeParams {
     const ParamField* field;
     FoundValue found;
   };
+
+  void look_for_files(const Given& given, const void* params) {
+    const ParamField& field = *given.field;
+    if (!field.type->files) return;
+    field.type->files(static_cast<const char*>(params) + field.offset, [&](const FilePath& file) {
+      const std::string why = file.empty() ? "" : why_missing(file.resolved, file.written);
+      if (why.empty()) return;
+      const bool few = problems_.size() < most_looked_beside;
+      add({.code = "missing_file",
+           .pointer = pointer_to(field.name, given.found),
+           .message = why,
+           .expected = "a file",
+           .got = file.written,
+           .suggestions = few ? near_files(file.resolved, file.written) : std::vector<std::string>()},
+          given.found);
+    });
+  }
 
   // What a node type says of values that are right one by one.
   void check(const void* params) {

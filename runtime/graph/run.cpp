@@ -177,6 +177,9 @@ class Runner {
 
   void fail(const Step& s, End end, const std::string& code, const std::string& message,
             const std::string& part = {}) {
+    stop(end);
+    // Whoever asks next finds the memory just as full: that is one problem and not two.
+    if (code == "memory" && memory_told_.exchange(true)) return;
     if (s.kind == Step::Kind::node) {
       const std::string at = part.empty() ? file_part(s.index, code) : part;
       state_.problem(state_.at_node(s.index, code, message, Severity::error, at), s.index);
@@ -190,12 +193,11 @@ class Runner {
                       .column = place.column},
                      state_.graph.nodes.size());
     }
-    stop(end);
   }
 
   // Readers know the file and not the parameter that names it: of a node with one such parameter it is that.
   std::string file_part(std::size_t n, const std::string& code) const {
-    if (code != "cannot_read_file" && code != "malformed_file") return {};
+    if (code != "cannot_read_file" && code != "malformed_file" && code != "missing_file") return {};
     std::string part;
     for (const ParamField& field : state_.graph.nodes[n].type->params.fields) {
       if (!field.type->files) continue;
@@ -370,7 +372,7 @@ class Runner {
   std::vector<std::atomic<std::size_t>> waiting_;
   std::vector<std::uint64_t> wanted_;
   std::atomic<End> end_{End::done};
-  std::atomic<bool> stopped_{false};
+  std::atomic<bool> stopped_{false}, memory_told_{false};
 };
 
 // Outputs whose file is one that the graph reads.

@@ -94,6 +94,7 @@ Diagnostic RunState::at_node(std::size_t node, const std::string& code, const st
                .file = place.file,
                .line = place.line,
                .column = place.column};
+  if (!place.setting.empty()) d.message += fmt::format(" (from --set {})", place.setting);
   return d;
 }
 

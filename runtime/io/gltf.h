@@ -35,7 +35,7 @@ struct GltfScene {
 // faces have; column transparency where one blends (runtime/io/gltf_material.h). Points and lines, tangents, skins, morph targets and animations are left out, and said so once.
 //
 // `textures`: whether pictures are read. Throws NodeError("malformed_file", "unsupported_version",
-// "unsupported_extension", "unsafe_path", "too_large") and WorldError("cannot_read_file", "out_of_memory")
+// "unsupported_extension", "unsafe_path", "missing_file", "too_large") and WorldError("cannot_read_file", "out_of_memory")
 // naming file and element ("box.gltf: accessors[3]: ..."): for indices and byte ranges out of range,
 // positions that are not finite, node cycles. Memory: at most 64 MB and 256 times the bytes of the files, so that a
 // small file cannot ask for much by naming the same data often. Cost: that of copying the columns.

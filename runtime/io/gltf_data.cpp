@@ -1,6 +1,7 @@
 #include "runtime/io/gltf_data.h"
 
 #include "runtime/core/error.h"
+#include "runtime/core/missing_file.h"
 
 #include <fmt/format.h>
 
@@ -126,6 +127,8 @@ FilePath resolved_uri(const FilePath& file, std::string_view uri, std::string_vi
 UriBytes::UriBytes(const FilePath& file, std::string_view uri, std::string_view element) {
   if (!uri.starts_with("data:")) {
     const FilePath path = resolved_uri(file, uri, element);
+    if (const std::string why = why_missing(path.resolved, path.written); !why.empty())
+      throw NodeError("missing_file", fmt::format("{}: {}: {}", file.written, element, why));
     try {
       file_ = std::make_unique<FileBytes>(path);
     } catch (const WorldError& e) {

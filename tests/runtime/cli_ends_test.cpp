@@ -269,11 +269,14 @@ TEST(CliEnds, PipesAndDevicesAreRefusedAtOnce) {
   const auto mesh = folder.write(
       "m.json", graph_with(R"("i": { "type": "io.load_mesh", "params": { "file": "pipe.obj" } })",
                            R"("o": { "from": "i" })"));
+  for (const std::string& named : {graph, mesh}) {
+    const auto r = frustum({"run", named});
+    EXPECT_EQ(r.code, 2) << "a mistake of the graph" << r.err;
+    EXPECT_THAT(r.err, AllOf(HasSubstr("missing_file"), HasSubstr("not a regular file"))) << r.err;
+  }
   for (const auto& command :
        std::vector<std::vector<std::string>>{{"check", folder.file("pipe")},
                                              {"check", "/dev/zero"},
-                                             {"run", graph},
-                                             {"run", mesh},
                                              {"diff", folder.file("pipe"), folder.file("pipe")}}) {
     const auto r = frustum(command);
     EXPECT_EQ(r.code, 3) << testing::PrintToString(command) << r.err;
@@ -306,21 +309,41 @@ TEST(CliEnds, CheckGoesOnAfterAFileThatCannotBeRead) {
   EXPECT_THAT(r.out, HasSubstr("g.json: 3 nodes, 1 outputs, no errors"));
 }
 
+TEST(CliEnds, AFileThatCannotBeWrittenIsKnownBeforeAnythingRuns) {
+  const TempFolder folder;
+  folder.write("broken.obj", "v 0 zero 0");
+  folder.write("file", "");
+  const auto graph = folder.write(
+      "g.json", graph_with(R"("m": { "type": "io.load_mesh", "params": { "file": "broken.obj" } })",
+                           R"("o": { "from": "m" })"));
+  for (const auto& command :
+       std::vector<std::vector<std::string>>{{"inspect", graph, "m", "--save", folder.file("file/x.obj")},
+                                             {"report", graph, "-o", folder.file("file/x.html")},
+                                             {"run", graph, "--trace", folder.file("file/x.json")}}) {
+    const auto r = frustum(command);
+    EXPECT_EQ(r.code, 3) << testing::PrintToString(command);
+    EXPECT_THAT(r.err, AllOf(HasSubstr("cannot_write_file"), Not(HasSubstr("malformed_file"))));
+  }
+  EXPECT_EQ(frustum({"report", graph, "-o", folder.file("new/x.html")}).code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("new"))) << "what was tried leaves nothing";
+}
+
 // ----- frames
 
 TEST(CliEnds, FramesThatWouldWriteOverEachOtherAreRefused) {
   const TempFolder folder;
+  folder.write("broken.exr", "no picture");
   const auto frames = [&](const std::string& file, const std::string& params, const std::string& range) {
     const auto graph = folder.write(
         "f.json", graph_with(R"("c": { "type": "scene.camera", "params": { "resolution": [4, 4] } },
-                               "m": { "type": "io.load_image", "params": { "file": "none.exr" } })",
+                               "m": { "type": "io.load_image", "params": { "file": "broken.exr" } })",
                              R"("o": { "from": "m", "file": ")" + file + "\" }", params));
     return frustum({"run", graph, "--frames", range, "--out", folder.file("out")});
   };
   const auto same = frames("a.exr", R"("params": { "frame": 1 }, )", "1-3");
   EXPECT_EQ(same.code, 2);
   EXPECT_THAT(same.err, AllOf(HasSubstr("error[file_without_frame]"), HasSubstr("/outputs/o/file")));
-  EXPECT_THAT(same.err, Not(HasSubstr("none.exr"))) << "nothing ran";
+  EXPECT_THAT(same.err, Not(HasSubstr("broken.exr"))) << "nothing ran";
   EXPECT_THAT(frames("a.exr", R"("params": { "frame": 1 }, )", "3").err,
               Not(HasSubstr("file_without_frame")));
   EXPECT_THAT(frames("a{frame}.exr", "", "1-3").err,

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,127 @@ ProcessResult inspect(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--set", "resolution=[64, 36]", "--set", "samples=2"});
   return frustum(arguments);
 }
+
+// ----- what is wrong with looking
+
+std::size_t times(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+TEST(CliInspect, AMistakeIsOneErrorWithItsPlaceAndWhatWasMeant) {
+  const TempFolder folder;
+  const struct {
+    std::vector<std::string> arguments;
+    const char *code, *pointer;
+    std::string file, expected, suggestion;
+  } cases[] = {
+      {{"display", "--pixel", "64,0"},
+       "outside_window",
+       "/nodes/display",
+       stages,
+       "x from 0 to 63, y from 0 to 35",
+       ""},
+      {{"display", "--provenance", "64,0"},
+       "outside_window",
+       "/nodes/display",
+       stages,
+       "a pixel of the picture",
+       ""},
+      {{"camera", "--pixel", "1,1"}, "not_pixels", "/nodes/camera", stages, "a port of pixels", ""},
+      {{"mesh", "--provenance", "1,1"}, "not_pixels", "/nodes/mesh", stages, "a port of pixels", ""},
+      {{"camera", "--table"}, "no_table", "/nodes/camera", stages, "a port whose buffer has rows", ""},
+      {{"camera", "--save", folder.file("x.csv")},
+       "unknown_format",
+       "",
+       folder.file("x.csv"),
+       "one of: json",
+       ""},
+      {{"mesh", "--save", folder.file("x.png")},
+       "unknown_format",
+       "",
+       folder.file("x.png"),
+       "one of: ply, obj, glb, gltf, csv, json",
+       ""},
+      {{"camera", "--save", folder.file("x.jsno")},
+       "unknown_format",
+       "",
+       folder.file("x.jsno"),
+       "one of: json",
+       folder.file("x.json")},
+      {{"display", "--save", folder.file("x.pgn")},
+       "unknown_format",
+       "",
+       folder.file("x.pgn"),
+       "one of: exr, png, tif, tiff, jpg, jpeg, hdr, csv, json",
+       folder.file("x.png")},
+      {{"points", "--save", folder.file("x.png")}, "format_cannot_hold", "", folder.file("x.png"), "", ""},
+      {{"display", "--save", folder.file("x.png"), "--sample", "1"},
+       "out_of_range",
+       "",
+       folder.file("x.png"),
+       "",
+       ""},
+  };
+  for (const auto& c : cases) {
+    const auto shown = testing::PrintToString(c.arguments);
+    const auto text = inspect(c.arguments);
+    EXPECT_EQ(text.code, 2) << shown;
+    EXPECT_THAT(text.out, IsEmpty()) << shown;
+    EXPECT_EQ(times(text.err, "error["), 1u) << text.err;
+    auto arguments = c.arguments;
+    arguments.push_back("--json");
+    const json all = json::parse(inspect(arguments).out)["diagnostics"];
+    ASSERT_EQ(all.size(), 1u) << all;
+    EXPECT_EQ(all[0]["code"], c.code) << shown;
+    EXPECT_EQ(all[0]["file"], c.file) << shown;
+    EXPECT_EQ(all[0]["pointer"], c.pointer) << shown;
+    EXPECT_EQ(all[0]["line"] > 0, *c.pointer != 0) << shown;
+    EXPECT_EQ(all[0]["expected"], c.expected) << shown;
+    EXPECT_EQ(all[0]["suggestions"].empty() ? "" : all[0]["suggestions"][0], c.suggestion) << shown;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "and nothing is written";
+}
+
+TEST(CliInspect, NamesTheNearestPortOfTheKindThatIsMeant) {
+  const TempFolder folder;
+  const auto graph = folder.write("g.json", R"({ "format": "frustum.graph/1", "nodes": {
+    "shade": { "type": "shade.material" }, "shape": { "type": "mesh.box" } } })");
+  EXPECT_THAT(frustum({"inspect", graph, "shade", "--table"}).err, HasSubstr("did you mean 'shape.mesh'?"));
+  EXPECT_THAT(inspect({"lit", "--provenance", "70,1"}).err, Not(HasSubstr("did you mean")));
+}
+
+TEST(CliInspect, NamesThePortsOfANodeThatHasNoSuchOne) {
+  const auto r = inspect({"hits.picture"});
+  EXPECT_EQ(r.code, 2);
+  EXPECT_THAT(r.err, AllOf(HasSubstr("error[unknown_address] " + stages), HasSubstr(" /nodes/hits\n"),
+                           HasSubstr("'hits' (rasterize.triangles) has no output 'picture'"),
+                           HasSubstr("'hits.visibility'")));
+}
+
+TEST(CliInspect, AFormatThatIsNoneIsKnownBeforeAnythingRuns) {
+  const TempFolder folder;
+  const auto graph = folder.write("g.json", R"({ "format": "frustum.graph/1", "nodes": {
+    "m": { "type": "io.load_mesh", "params": { "file": "broken.obj" } } } })");
+  folder.write("broken.obj", "v 0 zero 0");
+  const auto r = frustum({"inspect", graph, "m", "--save", folder.file("x.plz")});
+  EXPECT_EQ(r.code, 2);
+  EXPECT_THAT(r.err, AllOf(HasSubstr("unknown_format"), Not(HasSubstr("malformed_file"))));
+}
+
+TEST(CliInspect, ASampleIsOneThatThePixelHas) {
+  const TempFolder folder;
+  EXPECT_EQ(inspect({"lit", "--save", folder.file("x.exr"), "--sample", "1"}).code, 0);
+  EXPECT_EQ(inspect({"lit", "--save", folder.file("y.exr"), "--sample", "2"}).code, 2);
+  const auto whole = inspect({"lit", "--save", folder.file("y.csv"), "--sample", "1"});
+  EXPECT_EQ(whole.code, 2);
+  EXPECT_THAT(whole.err, HasSubstr("gets the whole buffer"));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("y.exr")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("y.csv")));
+}
+
+// ----- what is shown
 
 TEST(CliInspect, ShowsAComponentOfAMeshInALine) {
   const auto mesh = inspect({"mesh"});

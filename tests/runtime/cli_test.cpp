@@ -9,6 +9,7 @@
 #include <csignal>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <thread>
 
 #include <sys/wait.h>
@@ -24,6 +25,7 @@ using test::TempFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::IsSupersetOf;
 using testing::Not;
 
 const std::string root = FRUSTUM_SOURCE_DIR;
@@ -41,15 +43,46 @@ std::vector<std::string> small(std::vector<std::string> arguments) {
   return arguments;
 }
 
-TEST(Cli, HelpHasAnExampleForEveryCommand) {
-  for (const char* command : {"run", "check", "plan", "inspect", "report", "nodes", "diff", "sweep",
-                              "diverge", "stability", "test", "new", "catalog"}) {
-    const auto r = frustum({command, "--help"});
-    EXPECT_EQ(r.code, 0) << command;
-    EXPECT_THAT(r.out, AllOf(HasSubstr("Example:\n  frustum " + std::string(command)), HasSubstr("--json")))
-        << command;
-    EXPECT_THAT(r.err, IsEmpty()) << command;
+// The commands that the program's help names.
+std::vector<std::string> commands() {
+  std::istringstream help(frustum({"--help"}).out);
+  std::vector<std::string> out;
+  bool inside = false;
+  for (std::string line, name; std::getline(help, line);) {
+    if (inside && line.empty()) break;
+    if (inside && std::istringstream(line) >> name) out.push_back(name);
+    inside = inside || line.starts_with("Subcommands");
   }
+  return out;
+}
+
+TEST(Cli, HelpHasAnExampleForEveryCommand) {
+  const auto all = commands();
+  EXPECT_THAT(all, IsSupersetOf({"run", "check", "plan", "inspect", "report", "nodes", "diff", "sweep",
+                                 "diverge", "stability", "test", "new", "catalog"}));
+  for (const std::string& command : all)
+    for (const std::vector<std::string>& asked : {std::vector<std::string>{command, "--help"},
+                                                  {command, "-h"},
+                                                  {"--help", command},
+                                                  {command, "--json", "--help"}}) {
+      const auto r = frustum(asked);
+      EXPECT_EQ(r.code, 0) << command;
+      EXPECT_THAT(r.out, AllOf(HasSubstr("Usage: frustum " + command + " ["),
+                               HasSubstr("Example:\n  frustum " + command), HasSubstr("--json")))
+          << testing::PrintToString(asked);
+      EXPECT_THAT(r.err, IsEmpty()) << command;
+    }
+}
+
+TEST(Cli, HelpForACommandThatDoesNotExistSaysSo) {
+  for (const std::vector<std::string>& asked :
+       {std::vector<std::string>{"cache", "--help"}, {"--help", "cache"}, {"repotr", "-h"}}) {
+    const auto r = frustum(asked);
+    EXPECT_EQ(r.code, 2);
+    EXPECT_THAT(r.out, IsEmpty());
+    EXPECT_THAT(r.err, HasSubstr("no command '"));
+  }
+  EXPECT_THAT(frustum({"repotr", "--help"}).err, HasSubstr("did you mean 'report'?"));
 }
 
 TEST(Cli, WrongUseIsExit2WithTheNearestName) {
@@ -80,6 +113,40 @@ TEST(Cli, WrongUseIsExit2WithTheNearestName) {
   }
 }
 
+TEST(Cli, AnEmptyTextIsNoValue) {
+  const std::string picture = root + "/graphs/data/card.png";
+  for (const std::vector<std::string>& asked :
+       std::vector<std::vector<std::string>>{{"run", teapot, "--out", ""},
+                                             {"run", teapot, "--trace", ""},
+                                             {"run", ""},
+                                             {"check", teapot, ""},
+                                             {"inspect", teapot, "camera", "--save", ""},
+                                             {"report", teapot, "-o", ""},
+                                             {"nodes", ""},
+                                             {"diff", "", picture},
+                                             {"test", teapot, "--filter", ""},
+                                             {"sweep", teapot, "--out", ""}}) {
+    const auto r = frustum(asked);
+    EXPECT_EQ(r.code, 2) << testing::PrintToString(asked) << r.out;
+    EXPECT_THAT(r.out, IsEmpty()) << testing::PrintToString(asked);
+  }
+  EXPECT_THAT(frustum({"inspect", teapot, "camera", "--save", ""}).err,
+              HasSubstr("--save: the text is empty"));
+}
+
+TEST(Cli, ARegionMayReachBeyondAllPixels) {
+  const auto r =
+      frustum(small({"inspect", stages, "display", "--region", "60,30,2147483647,2147483647", "--json"}));
+  ASSERT_EQ(r.code, 0) << r.out;
+  EXPECT_EQ(json::parse(r.out)["summary"]["window"], json::array({60, 30, 64, 36}));
+}
+
+TEST(Cli, DiffNamesTheFileThatIsNone) {
+  const auto r = frustum({"diff", root + "/graphs/data/card.png", teapot, "--json"});
+  EXPECT_EQ(r.code, 2);
+  EXPECT_EQ(json::parse(r.out)["diagnostics"][0]["file"], teapot);
+}
+
 TEST(Cli, WrongUseCanBeJson) {
   const auto r = frustum({"run", "x.json", "--thraeds", "3", "--json"});
   EXPECT_EQ(r.code, 2);
@@ -90,6 +157,10 @@ TEST(Cli, AFileThatIsNotThereIsExit3) {
   const auto r = frustum({"check", "none.json", "--json"});
   EXPECT_EQ(r.code, 3);
   EXPECT_THAT(json::parse(r.out)["diagnostics"][0]["message"], HasSubstr("none.json"));
+  const TempFolder folder;
+  folder.write("teapot.json", "{}");
+  EXPECT_THAT(frustum({"run", folder.file("teapto.json")}).err,
+              HasSubstr("did you mean '" + folder.file("teapot.json") + "'?"));
 }
 
 TEST(Cli, CheckNamesEveryProblemAndRunsNothing) {

@@ -151,7 +151,7 @@ const Lie lies[] = {
      [](GltfMaker& g) {
        g.document["buffers"] = {{{"byteLength", 36}, {"uri", "none.bin"}}};
      },
-     "world: cannot_read_file", "box.glb: buffers[0]: cannot read none.bin"},
+     "missing_file", "box.glb: buffers[0]: there is no file 'none.bin'"},
     {"bad_base64",
      [](GltfMaker& g) {
        g.document["buffers"] = {{{"byteLength", 36}, {"uri", "data:;base64,AA*A"}}};

@@ -200,7 +200,7 @@ TEST_F(GraphsAsNodes, AreNoFoldersAndLibraryNamesNoPaths) {
   const auto message = [&](const std::string& file) {
     return first_error(load(graph_with(R"("a": { "type": "graph", "file": ")" + file + "\" }"))).message;
   };
-  EXPECT_EQ(message(".."), "'..' is a folder, not a graph file");
+  EXPECT_EQ(message(".."), "'..' is a folder, not a file");
   EXPECT_EQ(message("lib:../inner"),
             "'lib:../inner' is not the name of a library graph: it has neither slashes nor dots");
 }

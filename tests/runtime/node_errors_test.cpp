@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 namespace frustum {
 namespace {
 
@@ -131,14 +133,33 @@ TEST(NodeErrors, WhatHappensInsideAGraphUsedAsANodeNamesItsUse) {
   const std::string path = folder.write("outer.json", R"({ "format": "frustum.graph/1", "nodes": {
     "first": { "type": "graph", "file": "inner.json" } }, "outputs": { "mesh": { "from": "first" } } })");
   Session session;
+  folder.write("none.obj", "v 0 0 nothing");
   const Loaded loaded = session.load(path);
   ASSERT_TRUE(loaded.graph) << to_text(loaded.problems);
+  const RunResult r = session.run(*loaded.graph, {.demand = {.ports = end_ports(*loaded.graph)}});
+  EXPECT_EQ(r.end, RunResult::End::failed);
+  const Diagnostic d = only_error(r.problems);
+  EXPECT_EQ(d.code, "malformed_file");
+  EXPECT_EQ(d.pointer, "/nodes/m/params/file") << "the parameter that names the file";
+  EXPECT_THAT(d.message, testing::HasSubstr("(at 'first/m')"));
+}
+
+// It is there when the graph is loaded, and gone or closed when the node reads it.
+TEST(NodeErrors, AFileThatCannotBeReadIsTheWorldsFailure) {
+  const test::TempFolder folder;
+  const std::string path = folder.write("g.json", R"({ "format": "frustum.graph/1", "nodes": {
+    "m": { "type": "io.load_mesh", "params": { "file": "short.obj" } } } })");
+  folder.write("short.obj", "v 0 0 0");
+  Session session;
+  const Loaded loaded = session.load(path);
+  ASSERT_TRUE(loaded.graph) << to_text(loaded.problems);
+  std::filesystem::remove(folder.file("short.obj"));
   const RunResult r = session.run(*loaded.graph, {.demand = {.ports = end_ports(*loaded.graph)}});
   EXPECT_EQ(r.end, RunResult::End::world_failed);
   const Diagnostic d = only_error(r.problems);
   EXPECT_EQ(d.code, "cannot_read_file");
-  EXPECT_EQ(d.pointer, "/nodes/m/params/file") << "the parameter that names the file";
-  EXPECT_THAT(d.message, testing::HasSubstr("(at 'first/m')"));
+  EXPECT_EQ(d.pointer, "/nodes/m/params/file");
+  EXPECT_EQ(d.column, 56) << "the value, and not its key";
 }
 
 TEST(NodeErrors, AFrameOfASeriesIsNotSetByHandAsWell) {
@@ -173,6 +194,19 @@ TEST(NodeErrors, MemoryOfPreparedNodesCounts) {
   const Diagnostic d = only_error(bound.result.problems);
   EXPECT_EQ(d.code, "memory");
   EXPECT_EQ(d.pointer, "/nodes/pixels") << d.message;
+}
+
+// Nodes side by side find the memory full one after the other: that is one problem.
+TEST(NodeErrors, MemoryThatIsFullIsOneProblem) {
+  std::string nodes;
+  for (int i = 0; i < 40; ++i)
+    nodes += (i == 0 ? "" : ",\n") + ("\"p" + std::to_string(i)) +
+             R"(": { "type": "supersample.pattern", "params": { "samples": 1024 } })";
+  for (int round = 0; round < 10; ++round) {
+    const Ends ends = run_text(nodes, {}, {.memory = 1000});
+    EXPECT_EQ(ends.result.end, RunResult::End::failed);
+    EXPECT_EQ(only_error(ends.result.problems).code, "memory");
+  }
 }
 
 }  // namespace

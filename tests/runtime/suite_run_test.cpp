@@ -131,7 +131,7 @@ TEST(SuiteRun, ExpectsDiagnosticsExactly) {
          {"id": "good", "graph": "image.json", "expect": {"code": "cycle"}},
          {"id": "none", "graph": "bad.json"},
          {"id": "file", "graph": "none.json"},
-         {"id": "expected", "graph": "none.json", "expect": {"code": "cannot_read_file", "pointer": "/cases/5/graph"}},
+         {"id": "expected", "graph": "none.json", "expect": {"code": "missing_file", "pointer": "/cases/5/graph"}},
          {"id": "port", "graph": "image.json", "checks": [{"port": "oout"}]})");
   EXPECT_THAT(r[0].failures, IsEmpty());
   EXPECT_THAT(r[1].failures, ElementsAre(HasSubstr("expected the diagnostic cycle"),
@@ -139,7 +139,7 @@ TEST(SuiteRun, ExpectsDiagnosticsExactly) {
   EXPECT_EQ(r[2].verdict, CaseVerdict::fail);
   EXPECT_EQ(r[3].verdict, CaseVerdict::fail);
   EXPECT_EQ(r[4].verdict, CaseVerdict::fail) << "the suite is wrong, and nothing broke";
-  EXPECT_THAT(r[4].failures, ElementsAre(AllOf(HasSubstr("not expected: cannot_read_file at "),
+  EXPECT_THAT(r[4].failures, ElementsAre(AllOf(HasSubstr("not expected: missing_file at "),
                                                HasSubstr(" /cases/4/graph: "), HasSubstr("none.json"))));
   EXPECT_THAT(r[5].failures, IsEmpty());
   EXPECT_THAT(r[6].failures, ElementsAre(HasSubstr("did you mean 'out'?")));

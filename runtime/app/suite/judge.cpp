@@ -3,6 +3,7 @@
 #include "runtime/app/suite/case_run.h"
 #include "runtime/app/suite/relation.h"
 #include "runtime/app/suite/statements.h"
+#include "runtime/core/missing_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -53,9 +54,15 @@ class Judge {
       return session_.load(path, std::move(options));
     } catch (const WorldError& e) {
       if (e.code != "cannot_read_file") throw;
+      const std::string why = why_missing(path, path);
       Loaded none;
-      none.problems.add(
-          {.code = e.code, .pointer = pointer, .message = e.what(), .file = result_.suite_file});
+      none.problems.add({.code = why.empty() ? e.code : "missing_file",
+                         .pointer = pointer,
+                         .message = why.empty() ? e.what() : why,
+                         .expected = "a graph file",
+                         .got = path,
+                         .suggestions = near_files(path, path),
+                         .file = result_.suite_file});
       return none;
     }
   }
