@@ -7,7 +7,9 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <map>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace frustum::cli {
 namespace {
@@ -76,87 +78,92 @@ std::string node_text(const NodeType& type) {
   return out + fmt::format("\nexample: {}\n", example_path(type.name));
 }
 
-// Every knob of the catalogue, or of one node.
-int knobs(const Registry& registry, const NodeType* only, bool json) {
+using Types = std::vector<const NodeType*>;
+
+// What there is of some sort in the types: as {KEY: [...]}, or as text, which says so where it is nothing.
+int listing(const char* key, const Json& list, const std::string& text, const std::string& none, bool json) {
+  if (json)
+    print(Json{{key, list}});
+  else
+    print(text.empty() ? none + "\n" : text);
+  return done;
+}
+
+int knobs(const Types& types, bool json) {
   Json list = Json::array();
   std::string text;
-  for (const auto& [name, type] : registry) {
-    if (only != nullptr && only != &type) continue;
-    for (Json knob : knobs_json(type)) {
+  for (const NodeType* type : types) {
+    for (Json knob : knobs_json(*type)) {
       std::string values;
       for (const Json& v : knob["values"])
         values += (values.empty() ? "" : " ") + (v.is_string() ? v.get<std::string>() : v.dump());
-      std::string head = fmt::format("{}:{}  {}", name, knob["param"].get<std::string>(), values);
+      std::string head = fmt::format("{}:{}  {}", type->name, knob["param"].get<std::string>(), values);
       if (knob.contains("slope")) head += fmt::format("  (error ~ value^{})", knob["slope"].dump());
       if (knob.contains("taste")) head += "  (taste)";
       text += described(head, knob["basis"].get<std::string>());
-      knob["node"] = name;
+      knob["node"] = type->name;
       list.push_back(std::move(knob));
     }
   }
-  if (json)
-    print(Json{{"knobs", list}});
-  else
-    print(text);
-  return done;
+  return listing("knobs", list, text, "no parameter here trades accuracy for time", json);
 }
 
-// Every effect of the catalogue, or of one node.
-int effects(const Registry& registry, const NodeType* only, bool json) {
+int effects(const Types& types, bool json) {
   Json list = Json::array();
   std::string text;
-  for (const auto& [name, type] : registry) {
-    if (only != nullptr && only != &type) continue;
-    for (const EffectDoc& e : type.effects)
-      text += described(fmt::format("{}: {}", name, effect_head(e)), e.doc);
-    for (Json e : node_json(type)["effects"]) {
-      e["node"] = name;
+  for (const NodeType* type : types) {
+    for (const EffectDoc& e : type->effects)
+      text += described(fmt::format("{}: {}", type->name, effect_head(e)), e.doc);
+    const Json whole = node_json(*type);  // a part of a temporary would not last as long as the loop
+    for (Json e : whole["effects"]) {
+      e["node"] = type->name;
       list.push_back(std::move(e));
     }
   }
-  if (json)
-    print(Json{{"effects", list}});
-  else
-    print(text);
-  return done;
+  return listing("effects", list, text, "no work here is left out where a scene does not call for it", json);
 }
 
-std::vector<const NodeType*> types_of(const Registry& registry, const std::string& family) {
-  std::vector<const NodeType*> out;
+int catalogue(const Types& types, bool json) {
+  if (!json) return print(catalogue_text(types)), done;
+  Json list = Json::array();
+  for (const NodeType* t : types) list.push_back(node_json(*t));
+  return print(Json{{"nodes", list}}), done;
+}
+
+// The type of that name, or those of the family; all for an empty name.
+Types types_of(const Registry& registry, const std::string& wanted) {
+  Types out;
   for (const auto& [name, type] : registry)
-    if (family.empty() || name.starts_with(family + ".")) out.push_back(&type);
+    if (wanted.empty() || name == wanted || name.starts_with(wanted + ".")) out.push_back(&type);
   return out;
+}
+
+[[noreturn]] void unknown(const Registry& registry, const std::string& wanted) {
+  std::vector<std::string> known = registry.names();
+  std::set<std::string> families;
+  for (const std::string& name : known) families.insert(name.substr(0, name.find('.')));
+  known.insert(known.end(), families.begin(), families.end());
+  throw Mistake({.code = "unknown_type",
+                 .pointer = "",
+                 .message = fmt::format("'{}' is neither a node type nor a family of them", wanted),
+                 .expected = fmt::format("a node type, or one of: {}", fmt::join(families, ", ")),
+                 .got = wanted,
+                 .suggestions = nearest_names(wanted, known)});
 }
 
 enum class Only { all, knobs, effects };
 
 int nodes(const std::string& wanted, Only only, bool json) {
   const Session session;
-  if (only == Only::knobs && wanted.empty()) return knobs(session.registry(), nullptr, json);
-  if (only == Only::effects && wanted.empty()) return effects(session.registry(), nullptr, json);
-  const NodeType* type = session.registry().find(wanted);
-  const auto family = type == nullptr ? types_of(session.registry(), wanted) : std::vector<const NodeType*>{};
-  if (!family.empty()) {
-    if (!json) return print(catalogue_text(family)), done;
-    Json list = Json::array();
-    for (const NodeType* t : family) list.push_back(node_json(*t));
-    return print(Json{{"nodes", list}}), done;
-  }
-  if (type == nullptr) {
-    Diagnostics problems;
-    problems.add({.code = "unknown_type",
-                  .pointer = "",
-                  .message = fmt::format("'{}' is not a node type", wanted),
-                  .got = wanted,
-                  .suggestions = nearest_names(wanted, session.registry().names())});
-    return fail(problems, json);
-  }
-  if (only == Only::knobs) return knobs(session.registry(), type, json);
-  if (only == Only::effects) return effects(session.registry(), type, json);
+  const Types types = types_of(session.registry(), wanted);
+  if (types.empty()) unknown(session.registry(), wanted);
+  if (only == Only::knobs) return knobs(types, json);
+  if (only == Only::effects) return effects(types, json);
+  if (types.front()->name != wanted) return catalogue(types, json);
   if (json)
-    print(node_json(*type));
+    print(node_json(*types.front()));
   else
-    print(node_text(*type));
+    print(node_text(*types.front()));
   return done;
 }
 
@@ -173,7 +180,9 @@ void add_nodes(CLI::App& app, Invocation& chosen) {
                   });
   c.add_option("type", *wanted, "A node type, or a family of them such as clip.")->type_name("TYPE");
   CLI::Option* knob_flag = c.add_flag(
-      "--knobs", *only_knobs, "Only the parameters that trade accuracy for time, from cheap to exact.");
+      "--knobs", *only_knobs,
+      "Only the parameters that trade accuracy for time, from cheap to exact; of all, of a family or "
+      "of one type.");
   c.add_flag("--effects", *only_effects, "Only the work that a scene may not call for.")->excludes(knob_flag);
 }
 

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -83,6 +84,49 @@ TEST(Cli, HelpForACommandThatDoesNotExistSaysSo) {
     EXPECT_THAT(r.err, HasSubstr("no command '"));
   }
   EXPECT_THAT(frustum({"repotr", "--help"}).err, HasSubstr("did you mean 'report'?"));
+}
+
+TEST(Cli, NodesShowsWhatThereIsOfATypeAFamilyOrAll) {
+  const auto named = [](const std::vector<std::string>& asked, const char* list) {
+    std::set<std::string> out;
+    const json all = json::parse(frustum(asked).out);
+    for (const json& k : all.at(list)) out.insert(k[list == std::string("nodes") ? "type" : "node"]);
+    return out;
+  };
+  const auto of = [](const std::set<std::string>& all, const std::string& family) {
+    std::set<std::string> out;
+    for (const std::string& name : all)
+      if (name.starts_with(family + ".")) out.insert(name);
+    return out;
+  };
+  for (const auto& [flag, list] : {std::pair("--knobs", "knobs"), std::pair("--effects", "effects")}) {
+    const auto all = named({"nodes", flag, "--json"}, list);
+    EXPECT_GT(all.size(), 10u);
+    for (const char* family : {"clip", "rasterize", "shade", "supersample", "vector"}) {
+      const auto some = named({"nodes", family, flag, "--json"}, list);
+      EXPECT_EQ(some, of(all, family)) << flag << family;
+      EXPECT_EQ(named({"nodes", flag, family, "--json"}, list), some) << "in either order";
+    }
+    EXPECT_EQ(named({"nodes", *all.begin(), flag, "--json"}, list), std::set{*all.begin()});
+  }
+  EXPECT_THAT(frustum({"nodes", "shade", "--knobs"}).out, Not(HasSubstr("supersample.")));
+  const auto none = frustum({"nodes", "vector.make", "--knobs"});
+  EXPECT_EQ(none.code, 0);
+  EXPECT_THAT(none.out, HasSubstr("no parameter here"));
+}
+
+TEST(Cli, NodesNamesTheNearestOfWhatItDoesNotKnow) {
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--knobs"}, {"--effects"}, {"--knobs", "--json"}})
+    for (const auto& [wrong, near] :
+         {std::pair("cilp", "clip"), std::pair("clip.homogenoeus", "clip.homogeneous")}) {
+      std::vector<std::string> asked{"nodes", wrong};
+      asked.insert(asked.end(), more.begin(), more.end());
+      const auto r = frustum(asked);
+      EXPECT_EQ(r.code, 2) << testing::PrintToString(asked);
+      EXPECT_THAT(r.out + r.err, AllOf(HasSubstr("unknown_type"), HasSubstr("'" + std::string(wrong) + "'"),
+                                       HasSubstr(near)));
+    }
 }
 
 TEST(Cli, WrongUseIsExit2WithTheNearestName) {
