@@ -1,5 +1,6 @@
 #include "runtime/app/diverge.h"
 
+#include "runtime/app/run_failure.h"
 #include "runtime/buffers/mesh.h"
 #include "runtime/buffers/numbers.h"
 #include "runtime/core/error.h"
@@ -184,16 +185,7 @@ class Comparison {
       options.demand.ports.push_back({0, p});
     options.threads = o_.threads;
     options.cancel = o_.cancel;
-    RunResult r = session_.run(graph, options, false);
-    if (r.end == RunResult::End::cancelled) throw Cancelled();
-    if (r.end != RunResult::End::done) {
-      const auto& list = r.problems.list();
-      const std::string what =
-          fmt::format("{}: {}", of.nodes[n].id, list.empty() ? "it failed" : list.front().message);
-      if (r.end == RunResult::End::world_failed)
-        throw WorldError(list.empty() ? "internal" : list.front().code, what);
-      throw NodeError(list.empty() ? "failed" : list.front().code, what);
-    }
+    RunResult r = finished(session_.run(graph, options, false));
     std::vector<Buffer> out;
     for (const PortRef p : options.demand.ports) out.push_back(r.buffers[p]);
     return out;

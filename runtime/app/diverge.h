@@ -61,7 +61,7 @@ struct Divergence {
 
 // Nothing where a graph has problems, which are reported. The two graphs must have the same nodes. Every node
 // runs four times, one at a time, so memory holds only what later nodes still read. Throws NodeError,
-// WorldError, Cancelled.
+// RunFailure, WorldError, Cancelled.
 std::optional<Divergence> diverge(Session&, const DivergeOptions&, Diagnostics& problems);
 
 Json to_json(const Divergence&);

@@ -1,4 +1,5 @@
 // The command line: one file per command, this one reads the arguments and turns every end into an exit code.
+#include "runtime/app/run_failure.h"
 #include "runtime/cli/command.h"
 #include "runtime/core/version.h"
 
@@ -100,6 +101,8 @@ int run_body(const CLI::App& app, const Invocation& chosen) {
     return chosen.body();
   } catch (const UsageError& e) {
     return usage_error(e.what(), {}, help_of(app), chosen.json);
+  } catch (const RunFailure& e) {
+    return fail(e.result.problems, chosen.json, static_cast<Exit>(exit_code(e.result)));
   } catch (const Mistake& e) {
     return fail(e.problem, chosen.json);
   } catch (const WorldError& e) {

@@ -78,6 +78,30 @@ TEST(SweepCli, FilesAreTriedBeforeAnythingRuns) {
   EXPECT_THAT(r.err, HasSubstr("error[cannot_write_file]"));
 }
 
+// A node that warns stands before one that fails: the error is what ends the command, at its place, and is told once.
+TEST(SweepCli, ARunThatFailsKeepsItsPlaceAndItsCode) {
+  const test::TempFolder folder;
+  folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");  // no normals: a warning
+  const auto graph =
+      folder.write("g.json", R"({ "format": "frustum.graph/1", "params": { "unused": 1 }, "nodes": {
+    "m": { "type": "io.load_mesh", "params": { "file": "m.obj" } }, "clay": { "type": "shade.material" },
+    "red": { "type": "mesh.assign_material", "in": { "mesh": "m", "material": "clay" },
+             "params": { "instead_of": "gold" } } }, "outputs": { "o": { "from": "red" } } })");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"sweep", graph, "--knob", "precision=single,double", "-o",
+                                 folder.file("out")},
+        {"diverge", graph}}) {
+    const auto r = frustum(command);
+    EXPECT_EQ(r.code, 2) << r.out;
+    EXPECT_THAT(r.err, HasSubstr("error[unknown_material] " + graph + ":4:40 /nodes/red/params/instead_of"));
+  }
+  const auto wrong = frustum({"sweep", graph, "--knob", "nope=1,2", "-o", folder.file("out")});
+  EXPECT_EQ(wrong.code, 2);
+  const auto first = wrong.err.find("unused_parameter");
+  ASSERT_NE(first, std::string::npos) << wrong.err;
+  EXPECT_EQ(wrong.err.find("unused_parameter", first + 1), std::string::npos) << wrong.err;
+}
+
 struct OneCase {
   test::TempFolder folder;
   std::string suite = folder.write(

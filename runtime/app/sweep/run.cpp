@@ -2,6 +2,7 @@
 #include "runtime/app/files.h"
 #include "runtime/app/metrics/metrics.h"
 #include "runtime/app/read_files.h"
+#include "runtime/app/run_failure.h"
 #include "runtime/app/sweep/analysis.h"
 #include "runtime/app/sweep/journal.h"
 #include "runtime/app/sweep/pictures.h"
@@ -118,7 +119,9 @@ class SweepRun {
         options.settings.push_back(s);
     }
     Loaded loaded = session_.load(o_.graph, std::move(options));
-    if (!loaded.graph || settings.empty()) problems_.add(loaded.problems);
+    // The graph is the first one loaded, and every setting of it has the same warnings.
+    for (const Diagnostic& d : loaded.problems.list())
+      if (settings.empty() || d.severity == Severity::error) problems_.add(d);
     if (!loaded.graph) return std::nullopt;
     const auto want = wanted(*loaded.graph);
     if (!want) return std::nullopt;
@@ -157,16 +160,7 @@ class SweepRun {
     options.threads = o_.threads;
     options.cancel = o_.cancel;
     options.observer = observer;
-    RunResult r = session_.run(graph, options, false);
-    if (r.end == RunResult::End::cancelled) throw Cancelled();
-    if (r.end != RunResult::End::done) {
-      const auto& list = r.problems.list();
-      const std::string what = list.empty() ? "the run failed" : list.front().message;
-      if (r.end == RunResult::End::world_failed)
-        throw WorldError(list.empty() ? "internal" : list.front().code, what);
-      throw NodeError(list.empty() ? "failed" : list.front().code, what);
-    }
-    return r.buffers.at(port);
+    return finished(session_.run(graph, options, false)).buffers.at(port);
   }
 
   std::chrono::nanoseconds timed_run(const Candidate& c) {

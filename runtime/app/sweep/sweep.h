@@ -125,7 +125,8 @@ std::vector<SweepKnob> sweep_knobs(Session&, const Graph&, PortRef want, const S
 
 // Runs the sweep and writes its journal and pictures below options.folder; with `resume` what an earlier,
 // cut-off run of the same sweep finished is not run again. Bad graphs, and a folder in which files of the sweep would
-// take the place of those it reads, are reported in `problems` and give nothing. Throws NodeError for a wrong option, Cancelled (what is finished is kept), WorldError.
+// take the place of those it reads, are reported in `problems` and give nothing. Throws NodeError for a wrong option,
+// RunFailure where a setting cannot run, Cancelled (what is finished is kept), WorldError.
 //
 // Timed is what run_graph does from the plan to the finished buffer, with no cache and nobody listening. Not
 // timed: reading and checking the graph, and its io nodes: files are read once and stand in the graphs as
