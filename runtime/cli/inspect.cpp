@@ -165,18 +165,17 @@ void check_format(const BufferType& type, const Arguments& args) {
     throw UsageError(fmt::format("--sample {}: {} gets the whole buffer", *args.sample, args.save));
 }
 
-// What is told of a file names it.
 void save(const Buffer& buffer, const Arguments& args, Context& ctx, Diagnostics& warnings) {
   check_format(buffer.type(), args);
+  const auto warn = [&](std::string_view code, const std::string& message) {
+    warnings.add({.code = std::string(code),
+                  .severity = Severity::warning,
+                  .pointer = "",
+                  .message = message,
+                  .file = args.save});
+  };
   try {
-    save_buffer(buffer, args.save, ctx, args.sample, [&](std::string_view code, const std::string& message) {
-      const bool named = message.starts_with(args.save);
-      warnings.add({.code = std::string(code),
-                    .severity = Severity::warning,
-                    .pointer = "",
-                    .message = named ? message : fmt::format("{}: {}", args.save, message),
-                    .file = args.save});
-    });
+    save_buffer(buffer, args.save, ctx, args.sample, warn);
   } catch (const NodeError& e) {
     throw Mistake({.code = e.code, .pointer = "", .message = e.what(), .file = args.save});
   }

@@ -16,6 +16,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -474,6 +475,25 @@ TEST_F(Files, EveryFormOfAKindIsWritten) {
     for (const std::string& form : saved_as(b.type()))
       EXPECT_EQ(problem(b, "f." + form).first, "") << b.type().name << form;
   EXPECT_THAT(saved_as(buffer_type<Image>()), ElementsAre("csv", "json"));
+}
+
+// No reader takes such a file, ours neither.
+TEST_F(Files, OfMeshesHoldFinitePositions) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (const float odd : {infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
+    Mesh m = sheet<float>(3);
+    const auto broken = std::make_shared<Column>(m.at("position"));
+    broken->values<glm::vec3>()[7].y = odd;
+    for (auto& column : m.columns)
+      if (column->name() == "position") column = broken;
+    for (const char* name : {"m.ply", "m.obj", "m.glb", "m.gltf"}) {
+      const auto [code, message] = problem(buffer(m), name);
+      EXPECT_EQ(code, "format_cannot_hold") << name;
+      EXPECT_THAT(message, HasSubstr("vertex 7 is at (0.33333334"));
+    }
+    EXPECT_NO_THROW(save(buffer(m), "m.csv"));
+    EXPECT_NO_THROW(save(buffer(m), "m.json"));
+  }
 }
 
 }  // namespace
