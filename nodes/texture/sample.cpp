@@ -485,11 +485,10 @@ NodeType nodes::texture_sample() {
       .knob({"1", "2", "4", "8", "16", "32"},
             "A plane seen at a slant of 1 to k blurs k / max_anisotropy-fold beyond it.")
       .effect(lookup_name, texture_lookup, "Textures are read at the (u, v) of every point.",
-              {"sample",
-               45})  // tests/bench/effects_bench.cpp, one thread, a machine shared with others: 41 to 52
+              {"sample", 20})  // tests/bench/effects_bench.cpp, one thread: 8 to 30
       .effect(levels_name, mip_levels,
               "A level of the pyramid is chosen by the footprint of every point, and two blended.",
-              {"sample", 2.2})
+              {"sample", 3.5})
       .effect("transparency", transparency, "Colours carry the opacity of textures and vertices.")
       .output("image", &Outputs::image, "Colour at every sample, linear Rec.709, premultiplied.")
       .blank_where(&Inputs::points);

@@ -157,7 +157,7 @@ TEST_F(SuiteCheckTest, SameAsAnotherPortOrRun) {
   holds(image(R"({"port": "out", "same_as": {"set": {"made:add": 0.25}}, "max": 0.25, "why": "a test"})"));
   breaks(image(R"({"port": "out", "same_as": {"set": {"made:add": 0.25}}, "max": 0.2, "why": "a test"})"),
          "max 0.25, expected at most 0.2");
-  breaks(image(R"({"port": "out", "same_as": {"graph": "none.json"}})"), "/same_as: cannot read ");
+  breaks(image(R"({"port": "out", "same_as": {"graph": "none.json"}})"), "/same_as: there is no file ");
   breaks(image(R"({"port": "out", "same_as": {"graph": "mesh.json"}, "abs": 1, "why": "a test"})"),
          "it is of kind image, and the other run of kind mesh");
 }

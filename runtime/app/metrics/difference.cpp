@@ -145,6 +145,7 @@ decltype(auto) with_type(NumberKind kind, F&& f) {
 template <class See>
 void each_pair(const Raster& a, const Raster& b, const See& see) {
   const Frame& f = a.frame();
+  if (f.window.empty()) return;
   const Tile ta = a.view(), tb = b.view();
   for (int p = 0; p < static_cast<int>(f.planes.size()); ++p) {
     const Plane& plane = f.planes[static_cast<std::size_t>(p)];
