@@ -394,7 +394,7 @@ class Filler {
         if (clear && !s_.straight_albedo) straighten_row(alpha, n, straight_, points.albedo);
         shade_row(shader_.scene, points, n, scratch_, out);
         fade_row(shader_.scene, points.id, n, out);
-        if (clear) cover_row(alpha, n, out);
+        if (clear) cover_row(points.id, alpha, n, out);
       }
     }
   }
@@ -416,7 +416,7 @@ class Filler {
         put_face_row(id_[k], face_.data(), n_, color_, out_rows(k, y));
     }
     for (std::size_t k = 0; k < samples_ && s_.alpha; ++k)
-      if (any_clear(id_[k], alpha_row(k), n_)) cover_row(alpha_row(k), n_, out_rows(k, y));
+      if (any_clear(id_[k], alpha_row(k), n_)) cover_row(id_[k], alpha_row(k), n_, out_rows(k, y));
   }
 
   const State& s_;

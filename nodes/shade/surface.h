@@ -181,12 +181,12 @@ void straighten_row(const R* alpha, std::size_t n, const std::array<R*, 3>& to,
 }
 
 /// Scales colours by the opacity of each point. What is not there has no light, however bright: 0 times infinity would
-/// be NaN.
+/// be NaN. Where nothing is seen colours stay 0, whatever the albedo says there (0 times a negative lobe is -0).
 template <std::floating_point R>
-void cover_row(const R* alpha, std::size_t n, const kernels::ColorRows<R>& out) {
+void cover_row(const std::uint32_t* id, const R* alpha, std::size_t n, const kernels::ColorRows<R>& out) {
   for (R* plane : out.plane)
     for (std::size_t x = 0; x < n && plane != nullptr; ++x)
-      plane[x] = alpha[x] == R(0) ? R(0) : plane[x] * alpha[x];
+      plane[x] = id[x] == nothing_there || alpha[x] == R(0) ? R(0) : plane[x] * alpha[x];
 }
 
 /// Colours of a row of opaque faces; transparent black where nothing is seen.

@@ -76,6 +76,7 @@ NodeType nodes::texture_marble() {
       .param("high", &Params::high, "Colour between them, linear Rec.709.", {.range = at_least(0)})
       .output("image", &Outputs::image,
               "Colour at every sample, linear Rec.709, premultiplied; albedo for shading.")
+      .seen(seen_without_ids<State>)
       .blank_where(&Inputs::points);
 }
 

@@ -454,6 +454,8 @@ void tile(const State& s, const TilesOf<Inputs>& in, const TilesOf<Outputs>& out
     Sampler<double>(s, points, image, arena).fill();
 }
 
+Rect seen_without_ids(const State& s, Rect rect) { return s.id < 0 ? rect : Rect{}; }  // all, even at (0, 0)
+
 }  // namespace
 
 NodeType nodes::texture_sample() {
@@ -491,6 +493,7 @@ NodeType nodes::texture_sample() {
               {"sample", 3.5})
       .effect("transparency", transparency, "Colours carry the opacity of textures and vertices.")
       .output("image", &Outputs::image, "Colour at every sample, linear Rec.709, premultiplied.")
+      .seen(seen_without_ids)
       .blank_where(&Inputs::points);
 }
 

@@ -76,6 +76,12 @@ struct SpaceTexture {
   Precision precision;
 };
 
+// What it shows by itself: points without ids all have a place, those at the origin, too.
+template <class State>
+Rect seen_without_ids(const State& s, Rect rect) {
+  return s.places.id < 0 ? rect : Rect{};
+}
+
 template <class Outputs, class Params, class Inputs>
 Prepared<SpaceTexture<Params>, Outputs> prepare_space_texture(const Inputs& in, const Params& p,
                                                               Context& ctx) {

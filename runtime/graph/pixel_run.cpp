@@ -165,6 +165,8 @@ class PixelRun {
 
   void write_band(const Band& band) {
     for (const SinkJob& job : job_.sinks) {
+      const Rect rect = intersection(band.rect, job.region);
+      if (rect.empty()) continue;
       std::vector<Raster> keep;
       std::vector<Tile> layers;
       keep.reserve(job.layers.size());
@@ -173,20 +175,21 @@ class PixelRun {
         const Raster& raster = root == nullptr     ? std::get<Raster>(source.from)
                                : job_.whole[*root] ? *job_.whole[*root]
                                                    : *band.roots[*root];
-        const Rect part = intersection(raster.frame().window, band.rect);
-        if (part == band.rect && raster.frame().samples() == 1) {
+        const Rect part = intersection(raster.frame().window, rect);
+        if (part == rect && raster.frame().samples() == 1) {
           layers.push_back(raster.view(part));
           continue;
         }
-        keep.emplace_back(sink_frame(raster.frame(), band.rect));
+        const Tile whole = keep.emplace_back(sink_frame(raster.frame(), rect), Contents::anything).view();
+        blank_around(whole, part);
         if (part.empty()) {
-          // Outside the layer's window: zero.
+          // Outside the layer's window: blank.
         } else if (raster.frame().samples() == 1) {
-          copy(raster.view(part), keep.back().view(part));
+          copy(raster.view(part), whole.part(part));
         } else {
-          pick_central_samples(raster.view(part), keep.back().view(part));
+          pick_central_samples(raster.view(part), whole.part(part));
         }
-        layers.push_back(keep.back().view());
+        layers.push_back(whole);
       }
       job.sink->write(layers);
     }

@@ -22,6 +22,7 @@ struct SinkSource {
 
 struct SinkJob {
   Sink* sink = nullptr;
+  Rect region = {};  // what it is written; others of the pass may have more
   std::vector<SinkSource> layers;
 };
 

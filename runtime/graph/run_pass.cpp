@@ -338,6 +338,7 @@ class Pass {
       }
       sinks_.push_back(std::make_unique<NamedSink>(state_, index, request));
       jobs_[i].sink = sinks_.back().get();
+      jobs_[i].region = request.region;
     }
   }
 

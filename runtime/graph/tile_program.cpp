@@ -127,23 +127,33 @@ std::vector<Rect> TileProgram::rectangles(std::span<const Rect> targets) const {
   return rects;
 }
 
-// The part of each operation's rectangle that may show something, in the order of the data.
+// Where in `r` an operation shows something because of the input that it is blank without: a pixel that is seen there shows
+// in all that read it, as far to one side as reads() looks to the other.
+Rect shown_through(const TileOp& op, std::size_t input, const Rect& seen, const Rect& r) {
+  if (seen.empty()) return {};
+  const Rect read = op.type->reads(op.prepared->state.get(), input, r);
+  return intersection({seen.x0 - (read.x1 - r.x1), seen.y0 - (read.y1 - r.y1), seen.x1 + (r.x0 - read.x0),
+                       seen.y1 + (r.y0 - read.y0)},
+                      r);
+}
+
+// The part of each operation's rectangle that may show something, in the order of the data: what it finds by itself (seen),
+// and what its input shows, where it is blank else. Of what says neither, all.
 std::vector<Rect> TileProgram::seen_in(std::span<const Rect> rects) const {
   std::vector<Rect> seen(rects.begin(), rects.end());
   for (std::size_t i = 0; i < ops_.size(); ++i) {
     const TileOp& op = ops_[i];
     const Rect r = rects[i];
-    if (r.empty()) continue;
-    if (op.type->seen) {
-      seen[i] = intersection(op.type->seen(op.prepared->state.get(), r), r);
-    } else if (const auto k = op.type->blank_where; k && op.inputs[*k].op) {
-      // A pixel that is seen shows in all that read it: as far to one side as reads() looks to the other.
-      const Rect s = seen[*op.inputs[*k].op], read = op.type->reads(op.prepared->state.get(), *k, r);
-      seen[i] = s.empty() ? Rect{}
-                          : intersection({s.x0 - (read.x1 - r.x1), s.y0 - (read.y1 - r.y1),
-                                          s.x1 + (r.x0 - read.x0), s.y1 + (r.y0 - read.y0)},
-                                         r);
+    const auto& blank_where = op.type->blank_where;
+    const bool finds = static_cast<bool>(op.type->seen);
+    if (r.empty() || (!finds && !blank_where)) continue;
+    Rect shown;
+    if (finds) shown = intersection(op.type->seen(op.prepared->state.get(), r), r);
+    if (blank_where) {
+      const auto from = op.inputs[*blank_where].op;
+      shown = hull(shown, from ? shown_through(op, *blank_where, seen[*from], r) : r);
     }
+    seen[i] = shown;
   }
   return seen;
 }

@@ -271,6 +271,50 @@ TEST_F(ProvenEffects, PixelsThatShowNothingAreComputedWhenForced) {
   EXPECT_LT(2 * few.points, all.points);
 }
 
+// Points that have lost their ids are coloured everywhere; colours of nothing are 0, not -0, whatever the albedo's
+// opacity is there.
+TEST_F(ProvenEffects, WhatShowsWithoutAFaceShowsWithoutOneInFewerPixels) {
+  const std::string front = R"({ "format": "frustum.graph/1", "nodes": {
+    "ball":   { "type": "mesh.sphere" },
+    "camera": { "type": "scene.camera", "params": { "eye": [3, 2, 9], "resolution": [120, 90] } },
+    "eye":    { "type": "project.view", "in": { "mesh": "ball", "camera": "camera" } },
+    "clip":   { "type": "project.perspective", "in": { "mesh": "eye", "camera": "camera" } },
+    "screen": { "type": "project.viewport", "in": { "mesh": "clip", "camera": "camera" } },
+    "hits":   { "type": "rasterize.triangles", "in": { "mesh": "screen" } },
+    "points": { "type": "rasterize.attributes", "in": { "hits": "hits", "mesh": "screen" } },
+    "means":  { "type": "supersample.resolve", "in": { "image": "points" }, "params": { "filter": "box" } },
+    "board":  { "type": "texture.checker" },
+    "sun":    { "type": "light.directional" },
+    "albedo": { "type": "texture.sample", "in": { "points": "points", "texture": "board" } },
+    "soft":   { "type": "supersample.resolve", "in": { "image": "albedo" },
+                "params": { "filter": "mitchell", "radius": 3 } },
+)";
+  for (
+      const std::string last :
+      {R"("last": { "type": "texture.sample", "in": { "points": "means", "texture": "board" },
+                     "params": { "filter": "nearest" } })",
+       R"("last": { "type": "texture.noise", "in": { "points": "means" }, "params": { "bounded": false } })",
+       R"("last": { "type": "texture.marble", "in": { "points": "means" }, "params": { "bounded": false } })",
+       R"("last": { "type": "shade.surface", "in": { "points": "points", "mesh": "screen", "lights": ["sun"],
+                     "albedo": "soft" } })"}) {
+    const Loaded loaded =
+        load_graph_text(front + last + R"( }, "outputs": { "image": { "from": "last" } } })",
+                        folder_.file("g.json"), session_.registry(), {});
+    ASSERT_TRUE(loaded.graph) << to_text(loaded.problems);
+    const auto digest = [&](RunOptions o) {
+      o.demand = demand(*loaded.graph);
+      const RunResult r = session_.run(*loaded.graph, o, false);
+      EXPECT_EQ(r.end, RunResult::End::done) << to_text(r.problems);
+      return r.buffers.begin()->second.digest();
+    };
+    RunOptions forced;
+    forced.effects.forced = {"blank_pixels"};
+    const auto truth = digest({.tile_edge = -1, .fuse = false});
+    EXPECT_EQ(digest(forced), truth) << last;
+    for (const int edge : {0, 8, 64}) EXPECT_EQ(digest({.tile_edge = edge}), truth) << last << edge;
+  }
+}
+
 TEST_F(ProvenEffects, AShortcutChangesGeometryAndNoPicture) {
   const Graph g = load(session_, {{"eye", "[0, 0, 1.2]"}, {"mesh", floor_around}}, Precision::single);
   const PortRef near = *g.find_port("near.mesh"), image = *g.find_port("image");

@@ -68,5 +68,47 @@ TEST(RegionFiles, AreCutToThePicture) {
   EXPECT_EQ(part.display_window, (Rect{0, 0, 200, 100}));
 }
 
+// Pictures of two sizes from one pass: each file gets its own rows and columns, and has the bytes that it has alone.
+TEST(RegionFiles, ArePicturesOfTheirOwnSize) {
+  const test::TempFolder folder;
+  const std::string graph = folder.write("g.json", R"({ "format": "frustum.graph/1", "nodes": {
+    "ball":   { "type": "mesh.sphere" },
+    "camera": { "type": "scene.camera", "params": { "resolution": [33, 17] } },
+    "eye":    { "type": "project.view", "in": { "mesh": "ball", "camera": "camera" } },
+    "clip":   { "type": "project.perspective", "in": { "mesh": "eye", "camera": "camera" } },
+    "screen": { "type": "project.viewport", "in": { "mesh": "clip", "camera": "camera" } },
+    "hits":   { "type": "rasterize.triangles", "in": { "mesh": "screen" } },
+    "points": { "type": "rasterize.attributes", "in": { "hits": "hits", "mesh": "screen" } },
+    "sun":    { "type": "light.directional" },
+    "lit":    { "type": "shade.surface", "in": { "points": "points", "mesh": "screen", "lights": ["sun"] } },
+    "large":  { "type": "image.magnify", "in": { "image": "lit" }, "params": { "factor": 3 } } },
+    "outputs": { "hits":  { "from": "hits", "file": "hits.exr", "bits": 32 },
+                 "large": { "from": "large", "file": "large.exr", "bits": 32 } } })");
+  const auto picture = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run", graph, "--out", folder.file("out")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto run = test::frustum(arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return read_image(folder.file("out") + "/" + file, file).raster;
+  };
+  for (const std::vector<std::string>& more : {std::vector<std::string>{},
+                                               {"--no-fuse"},
+                                               {"--region", "20,3,30,40"},
+                                               {"--no-fuse", "--region", "20,3,30,40"}}) {
+    for (const std::string name : {"hits", "large"}) {
+      std::vector<std::string> alone = more;
+      alone.insert(alone.end(), {"--want", name});
+      const Raster both = picture(name + ".exr", more), one = picture(name + ".exr", alone);
+      ASSERT_EQ(both.frame().window, one.frame().window);
+      const Rect& w = both.frame().window;
+      for (int p = 0; p < static_cast<int>(both.frame().planes.size()); ++p)
+        for (int y = w.y0; y < w.y1; ++y)
+          for (int x = w.x0; x < w.x1; ++x)
+            ASSERT_EQ(both.value(p, 0, x, y), one.value(p, 0, x, y))
+                << name << " plane " << p << " at " << x << ", " << y;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace frustum
