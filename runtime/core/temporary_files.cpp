@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <memory>
 #include <mutex>
 #include <unordered_map>
 #include <vector>
@@ -27,17 +28,22 @@ void push(List<T>& list, Link<T>* link) {
   }
 }
 
-// Whoever takes the name out of a slot owns it.
+// Whoever takes the name out of a slot may use it; a handler's is never freed.
 using Slot = Link<std::atomic<char*>>;
 List<std::atomic<char*>> slots{nullptr};
 List<RemoveTemporaryFiles> modules{nullptr};
 static_assert(std::atomic<char*>::is_always_lock_free && std::atomic<Slot*>::is_always_lock_free,
               "a signal handler may touch nothing else");
 
+struct Name {
+  Slot* slot;
+  std::unique_ptr<char[]> text;
+};
 struct Registry {
   std::mutex mutex;
-  std::unordered_map<std::string, Slot*> used;
+  std::unordered_map<std::string, Name> used;
   std::vector<Slot*> empty;
+  std::vector<std::unique_ptr<char[]>> taken;  // by a handler
 };
 // Never destroyed: files may still be written while the process ends.
 Registry& registry() {
@@ -48,28 +54,28 @@ Registry& registry() {
 }  // namespace
 
 void remember_temporary_file(const std::string& path) {
-  auto& [mutex, used, empty] = registry();
+  auto& [mutex, used, empty, taken] = registry();
   const std::lock_guard lock(mutex);
-  const auto [entry, added] = used.try_emplace(path, nullptr);
-  if (!added) return;
+  if (used.contains(path)) return;
   if (empty.empty()) {
     empty.push_back(new Slot);
     push(slots, empty.back());
   }
-  entry->second = empty.back();
+  Name name{empty.back(), std::make_unique<char[]>(path.size() + 1)};
+  std::memcpy(name.text.get(), path.c_str(), path.size() + 1);
+  const auto entry = used.emplace(path, std::move(name)).first;
   empty.pop_back();
-  auto* name = new char[path.size() + 1];
-  std::memcpy(name, path.c_str(), path.size() + 1);
-  entry->second->value.store(name);
+  entry->second.slot->value.store(entry->second.text.get());
 }
 
 void forget_temporary_file(const std::string& path) {
-  auto& [mutex, used, empty] = registry();
+  auto& [mutex, used, empty, taken] = registry();
   const std::lock_guard lock(mutex);
   const auto entry = used.find(path);
   if (entry == used.end()) return;
-  delete[] entry->second->value.exchange(nullptr);  // null where a handler has the name: it is not freed then
-  empty.push_back(entry->second);
+  auto& [slot, text] = entry->second;
+  if (slot->value.exchange(nullptr) == nullptr) taken.push_back(std::move(text));
+  empty.push_back(slot);
   used.erase(entry);
 }
 
