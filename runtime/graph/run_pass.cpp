@@ -159,13 +159,13 @@ class Pass {
     if (std::none_of(ops_.begin(), ops_.end(), [](const TileOp& op) { return op.type->blank_where; })) return;
     const std::vector<TileProgram::Pixels> pixels = TileProgram(ops_, roots_).count_blank();
     for (std::size_t i = 0; i < ops_.size(); ++i) {
+      ops_[i].everywhere = state_.options.effects.forces(blank_pixels);
       if (pixels[i].blank == 0) continue;
       const auto samples = static_cast<std::uint64_t>(ops_[i].prepared->frames.front()->samples());
       state_.decided(pass_.nodes[i],
                      {{std::string(blank_pixels), off_exact(fmt::format("nothing is seen in {} of {} pixels",
                                                                         pixels[i].blank, pixels[i].all),
                                                             pixels[i].blank * samples)}});
-      ops_[i].everywhere = state_.options.effects.forces(blank_pixels);
     }
   }
 

@@ -38,6 +38,16 @@ std::size_t tile_bytes(const Frame& f, const std::vector<bool>& read, Rect r) {
   return sum;
 }
 
+// Where in `r` an operation shows something because of the input that it is blank without: a pixel that is seen there shows
+// in all that read it, as far to one side as reads() looks to the other.
+Rect shown_through(const TileOp& op, std::size_t input, const Rect& seen, const Rect& r) {
+  if (seen.empty()) return {};
+  const Rect read = op.type->reads(op.prepared->state.get(), input, r);
+  return intersection({seen.x0 - (read.x1 - r.x1), seen.y0 - (read.y1 - r.y1), seen.x1 + (r.x0 - read.x0),
+                       seen.y1 + (r.y0 - read.y0)},
+                      r);
+}
+
 }  // namespace
 
 // ----- memory
@@ -125,16 +135,6 @@ std::vector<Rect> TileProgram::rectangles(std::span<const Rect> targets) const {
     }
   }
   return rects;
-}
-
-// Where in `r` an operation shows something because of the input that it is blank without: a pixel that is seen there shows
-// in all that read it, as far to one side as reads() looks to the other.
-Rect shown_through(const TileOp& op, std::size_t input, const Rect& seen, const Rect& r) {
-  if (seen.empty()) return {};
-  const Rect read = op.type->reads(op.prepared->state.get(), input, r);
-  return intersection({seen.x0 - (read.x1 - r.x1), seen.y0 - (read.y1 - r.y1), seen.x1 + (r.x0 - read.x0),
-                       seen.y1 + (r.y0 - read.y0)},
-                      r);
 }
 
 // The part of each operation's rectangle that may show something, in the order of the data: what it finds by itself (seen),
