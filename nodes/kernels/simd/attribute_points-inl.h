@@ -136,22 +136,26 @@ HWY_INLINE void find_faces(const AttributeScene<float>& scene, int i, Points& p)
   }
 }
 
-// Numbers of the corners of faces, by lane: numbers(f, k) points to those of corner k of the f-th face. A broadcast under
+// Numbers of the corners of faces, by lane: find(f, from) points `from` to those of the f-th face. A broadcast under
 // a mask is one instruction on some targets; copying them lane by lane took twice as long even where every lane sees
 // a face of its own.
-template <int width, class Numbers>
-HWY_INLINE void load_corners(const LaneFaces& faces, Floats (&to)[3][width], const Numbers& numbers) {
+template <int width, class Find>
+HWY_INLINE void load_corners(const LaneFaces& faces, Floats (&to)[3][width], const Find& find) {
   const Float df;
+  const float* from[3];
+  find(0, from);
   for (int k = 0; k < 3; ++k) {
-    const float* one = numbers(0, k);
-    for (int c = 0; c < width; ++c) to[k][c] = hn::Set(df, one[c]);
+    HWY_UNROLL(4)
+    for (int c = 0; c < width; ++c) to[k][c] = hn::Set(df, from[k][c]);
   }
-  for (int f = 1; f < faces.count; ++f)
+  for (int f = 1; f < faces.count; ++f) {
+    find(f, from);
+    const hn::Mask<Float> lanes = faces.lanes[f];
     for (int k = 0; k < 3; ++k) {
-      const float* one = numbers(f, k);
-      for (int c = 0; c < width; ++c)
-        to[k][c] = hn::IfThenElse(faces.lanes[f], hn::Set(df, one[c]), to[k][c]);
+      HWY_UNROLL(4)
+      for (int c = 0; c < width; ++c) to[k][c] = hn::IfThenElse(lanes, hn::Set(df, from[k][c]), to[k][c]);
     }
+  }
 }
 
 // Loads the offsets of the samples of the points from i on. Where all pixels have the same samples, they are
@@ -176,7 +180,9 @@ struct GridCorners {
     const auto scale = hn::Set(df, static_cast<float>(1 << scene.mesh.corner_bits));
     const int shift = corner_bits - scene.mesh.corner_bits;
     Floats corner[3][4];
-    load_corners(faces, corner, [&](int f, int k) { return &scene.mesh.position[faces.vertex[f][k]].x; });
+    load_corners(faces, corner, [&](int f, const float*(&from)[3]) HWY_ATTR {
+      for (int k = 0; k < 3; ++k) from[k] = &scene.mesh.position[faces.vertex[f][k]].x;
+    });
     for (int k = 0; k < 3; ++k) {
       x[k] = hn::ShiftLeftSame(hn::NearestInt(hn::Mul(corner[k][0], scale)), shift);
       y[k] = hn::ShiftLeftSame(hn::NearestInt(hn::Mul(corner[k][1], scale)), shift);
