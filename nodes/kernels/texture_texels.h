@@ -101,19 +101,17 @@ TexelPair<R> texel_pair(R t, int size, EdgeRule rule) {
 template <std::floating_point R>
 using Rgba = std::array<R, 4>;
 
-/// a + f (b - a), held between the two: exactly a where f is 0 or b equals a, exactly b where f is 1.
-/// Plainly, 1e8 and 1 give 0 at f = 1 (hard case TEX-06). NaN where either is NaN.
+/// From the nearer of the two ends: a + f (b - a) for f up to 1/2, else b + (1 - f) (a - b). At most half of a
+/// difference is added, which no rounding takes beyond the other end: the result lies between a and b, is
+/// exactly a where f is 0 or b equals a, and exactly b where f is 1. From one end alone, 1e8 and 1 give 0 at
+/// f = 1 (hard case TEX-06). NaN where either is NaN; infinite where a - b overflows.
 template <std::floating_point R>
 Rgba<R> between(const Rgba<R>& a, const Rgba<R>& b, R f) {
+  const bool from_b = f > R(0.5);
+  const Rgba<R>&from = from_b ? b : a, &to = from_b ? a : b;
+  const R share = from_b ? R(1) - f : f;
   Rgba<R> c;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const bool rises = a[k] < b[k];
-    const R least = rises ? a[k] : b[k], greatest = rises ? b[k] : a[k];
-    R v = a[k] + f * (b[k] - a[k]);
-    v = v < least ? least : v;
-    v = greatest < v ? greatest : v;
-    c[k] = f < R(1) ? v : b[k];
-  }
+  for (std::size_t k = 0; k < 4; ++k) c[k] = from[k] + share * (to[k] - from[k]);
   return c;
 }
 
@@ -159,10 +157,10 @@ R placed(R u, EdgeRule rule) {
 template <std::floating_point R>
 Rgba<R> bilinear(const TexelPyramid& p, const TexelLevel& level, R s, R t) {
   const auto x = texel_pair(s, level.width, p.wrap_u), y = texel_pair(t, level.height, p.wrap_v);
-  const auto top = between(texel<R>(level, x.first, y.first), texel<R>(level, x.second, y.first), x.fraction);
-  const auto bottom =
-      between(texel<R>(level, x.first, y.second), texel<R>(level, x.second, y.second), x.fraction);
-  return between(top, bottom, y.fraction);
+  const auto down = [&](int column) {
+    return between(texel<R>(level, column, y.first), texel<R>(level, column, y.second), y.fraction);
+  };
+  return between(down(x.first), down(x.second), x.fraction);
 }
 
 template <std::floating_point R>

@@ -9,8 +9,6 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "nodes/kernels/simd/order-inl.h"
-
 HWY_BEFORE_NAMESPACE();
 namespace frustum::kernels::simd::HWY_NAMESPACE {
 namespace {
@@ -184,13 +182,26 @@ HWY_INLINE V pyramid_level(const UvRows<float>& p, const TexelLevel& base, int l
   return hn::IfThenElseZero(hn::Gt(level, hn::Zero(d)), hn::IfThenElse(hn::Lt(level, top), level, top));
 }
 
-// Where one level is read, lane by lane: the first texel of the upper and of the lower row, how far off the second of
-// either is, and the fractions between them.
+// A fraction f as `between` uses it: how far from the nearer end, at most 1/2; negative, -0 too, where that is the
+// second.
+HWY_INLINE V from_nearer(V f) {
+  const D d;
+  const V past = hn::Neg(hn::Sub(hn::Set(d, 1.0F), f));
+  return hn::IfThenElse(hn::Gt(f, hn::Set(d, 0.5F)), past, f);
+}
+
+HWY_INLINE M is_second_nearer(V from_nearer) {
+  const Di di;
+  return hn::RebindMask(D(), hn::Lt(hn::BitCast(di, from_nearer), hn::Zero(di)));
+}
+
+// Where one level is read, lane by lane: the first texel of the nearer row and of the other one, how far off the
+// second of either is, and how far from the nearer row and from the nearer column.
 struct Taps {
   HWY_ALIGN std::int64_t row[2][max_lanes];  // addresses
   HWY_ALIGN std::int32_t step[max_lanes];    // in numbers, not texels
   bool adjacent;                             // the second texels follow the first ones in every lane
-  V fx, fy;
+  V fx, fy;                                  // as from_nearer gives them; fy without its sign
 };
 
 HWY_INLINE const float* texel_at(std::int64_t address) { return reinterpret_cast<const float*>(address); }
@@ -211,7 +222,24 @@ HWY_INLINE void find_rows(const float* from, Vi offset, std::int64_t* to) {
 using D4 = hn::CappedTag<float, 4>;
 HWY_INLINE std::size_t blocks() { return hn::Lanes(D()) / 4; }
 
-// The texels at `from`, one a block; and of two texels each, the first ones and the second ones.
+// Neighbours in a row, each two for one point, as one load finds them: with vectors of 64 bytes those of points 0 and
+// 2 of a group, and of 1 and 3; with 32 bytes of point 0, and of 1; with 16 bytes the first of the two, and the
+// second.
+struct Pairs {
+  V part[2];
+};
+
+// The numbers that the lanes have for the points of the pairs of group `g`.
+HWY_INLINE V spread_to_pairs(V of, std::size_t g, std::size_t part) {
+  const Di di;
+  const auto first = static_cast<std::int32_t>(blocks() * g);
+  if (blocks() == 1) return hn::TableLookupLanes(of, hn::IndicesFromVec(D(), hn::Set(di, first)));
+  const Vi two = hn::ShiftLeft<1>(hn::ShiftRight<3>(hn::Iota(di, 0)));
+  const Vi point = hn::Add(two, hn::Set(di, first + static_cast<std::int32_t>(part)));
+  return hn::TableLookupLanes(of, hn::IndicesFromVec(D(), point));
+}
+
+// Pairs from the addresses of their first texels; their first ones and their second ones; and texels one a block.
 #if HWY_MAX_BYTES >= 64
 HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
   const hn::Half<D> dh;
@@ -219,37 +247,38 @@ HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
   return hn::Combine(D(), hn::Combine(dh, hn::LoadU(d4, from[3]), hn::LoadU(d4, from[2])),
                      hn::Combine(dh, hn::LoadU(d4, from[1]), hn::LoadU(d4, from[0])));
 }
-HWY_INLINE void load_pairs(const std::int64_t* from, V& first, V& second) {
+HWY_INLINE Pairs load_pairs(const std::int64_t* from) {
   const D d;
   const hn::Half<D> dh;
-  const V even = hn::Combine(d, hn::LoadU(dh, texel_at(from[2])), hn::LoadU(dh, texel_at(from[0])));
-  const V odd = hn::Combine(d, hn::LoadU(dh, texel_at(from[3])), hn::LoadU(dh, texel_at(from[1])));
-  first = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(odd), even);
-  second = hn::OddEvenBlocks(odd, hn::SwapAdjacentBlocks(even));
+  return {{hn::Combine(d, hn::LoadU(dh, texel_at(from[2])), hn::LoadU(dh, texel_at(from[0]))),
+           hn::Combine(d, hn::LoadU(dh, texel_at(from[3])), hn::LoadU(dh, texel_at(from[1])))}};
+}
+HWY_INLINE V first_of(const Pairs& p) {
+  return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(p.part[1]), p.part[0]);
+}
+HWY_INLINE V second_of(const Pairs& p) {
+  return hn::OddEvenBlocks(p.part[1], hn::SwapAdjacentBlocks(p.part[0]));
 }
 #elif HWY_MAX_BYTES == 32
 HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
   const D4 d4;
   return hn::Combine(D(), hn::LoadU(d4, from[1]), hn::LoadU(d4, from[0]));
 }
-HWY_INLINE void load_pairs(const std::int64_t* from, V& first, V& second) {
+HWY_INLINE Pairs load_pairs(const std::int64_t* from) {
   const D d;
-  const V left = hn::LoadU(d, texel_at(from[0])), right = hn::LoadU(d, texel_at(from[1]));
-  first = hn::ConcatLowerLower(d, right, left);
-  second = hn::ConcatUpperUpper(d, right, left);
+  return {{hn::LoadU(d, texel_at(from[0])), hn::LoadU(d, texel_at(from[1]))}};
 }
+HWY_INLINE V first_of(const Pairs& p) { return hn::ConcatLowerLower(D(), p.part[1], p.part[0]); }
+HWY_INLINE V second_of(const Pairs& p) { return hn::ConcatUpperUpper(D(), p.part[1], p.part[0]); }
 #else
 HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) { return hn::LoadU(D(), from[0]); }
-HWY_INLINE void load_pairs(const std::int64_t* from, V& first, V& second) {
-  first = hn::LoadU(D(), texel_at(from[0])), second = hn::LoadU(D(), texel_at(from[0]) + 4);
+HWY_INLINE Pairs load_pairs(const std::int64_t* from) {
+  const D d;
+  return {{hn::LoadU(d, texel_at(from[0])), hn::LoadU(d, texel_at(from[0]) + 4)}};
 }
+HWY_INLINE V first_of(const Pairs& p) { return p.part[0]; }
+HWY_INLINE V second_of(const Pairs& p) { return p.part[1]; }
 #endif
-
-// `between` in every lane.
-HWY_INLINE V blend(V a, V b, V f) {
-  const V v = held_between(hn::Add(a, hn::Mul(f, hn::Sub(b, a))), lesser(a, b), greater(b, a));
-  return hn::IfThenElse(hn::Lt(f, hn::Set(D(), 1.0F)), v, b);
-}
 
 // The four numbers of each point of vector `g` of a group get the number that lane has for the point.
 HWY_INLINE V spread(V of, std::size_t g) {
@@ -258,21 +287,37 @@ HWY_INLINE V spread(V of, std::size_t g) {
   return hn::TableLookupLanes(of, hn::IndicesFromVec(D(), point));
 }
 
+HWY_INLINE V towards(V nearer, V other, V share) {
+  return hn::Add(nearer, hn::Mul(share, hn::Sub(other, nearer)));
+}
+
+// `between` in every lane, of a fraction that from_nearer has seen.
+HWY_INLINE V blend(V a, V b, V f) {
+  const M second = is_second_nearer(f);
+  return towards(hn::IfThenElse(second, b, a), hn::IfThenElse(second, a, b), hn::Abs(f));
+}
+
 HWY_INLINE V fetch(const Taps& taps, std::size_t g) {
-  V first[2], second[2];
-  for (std::size_t r = 0; r < 2; ++r) {
-    const std::int64_t* from = taps.row[r] + g * blocks();
-    if (taps.adjacent) {
-      load_pairs(from, first[r], second[r]);
-      continue;
+  const std::int64_t *nearer = taps.row[0] + g * blocks(), *other = taps.row[1] + g * blocks();
+  V first, second;
+  if (taps.adjacent) {
+    Pairs down = load_pairs(nearer);
+    const Pairs beyond = load_pairs(other);
+    for (std::size_t i = 0; i < 2; ++i)
+      down.part[i] = towards(down.part[i], beyond.part[i], spread_to_pairs(taps.fy, g, i));
+    first = first_of(down), second = second_of(down);
+  } else {
+    const V fy = spread(taps.fy, g);
+    const float* at[2][2][max_lanes / 4];  // by column and row
+    for (std::size_t b = 0; b < blocks(); ++b) {
+      at[0][0][b] = texel_at(nearer[b]), at[0][1][b] = texel_at(other[b]);
+      const std::int32_t step = taps.step[g * blocks() + b];
+      at[1][0][b] = at[0][0][b] + step, at[1][1][b] = at[0][1][b] + step;
     }
-    const float *left[max_lanes / 4], *right[max_lanes / 4];
-    for (std::size_t b = 0; b < blocks(); ++b)
-      left[b] = texel_at(from[b]), right[b] = left[b] + taps.step[g * blocks() + b];
-    first[r] = load_blocks(left), second[r] = load_blocks(right);
+    first = towards(load_blocks(at[0][0]), load_blocks(at[0][1]), fy);
+    second = towards(load_blocks(at[1][0]), load_blocks(at[1][1]), fy);
   }
-  const V fx = spread(taps.fx, g);
-  return blend(blend(first[0], second[0], fx), blend(first[1], second[1], fx), spread(taps.fy, g));
+  return blend(first, second, spread(taps.fx, g));
 }
 
 constexpr float cached_texels = 128 * 128;  // 256 KB: a quarter of a core's second cache
@@ -304,12 +349,12 @@ struct LevelTable {
   }
 
   // Each lane's in a level of its own.
-  void find_mixed_rows(Vi level, Vi upper, Vi lower, Taps& taps) const {
+  void find_mixed_rows(Vi level, Vi nearer, Vi other, Taps& taps) const {
     const Di di;
     HWY_ALIGN std::int32_t levels[max_lanes], offset[2][max_lanes];
     hn::Store(level, di, levels);
-    hn::Store(upper, di, offset[0]);
-    hn::Store(lower, di, offset[1]);
+    hn::Store(nearer, di, offset[0]);
+    hn::Store(other, di, offset[1]);
     for (std::size_t r = 0; r < 2; ++r)
       for (std::size_t lane = 0; lane < hn::Lanes(di); ++lane)
         taps.row[r][lane] = reinterpret_cast<std::int64_t>(rgba[levels[lane]] + offset[r][lane]);
@@ -325,13 +370,17 @@ struct LevelTable {
     const V rows = same ? hn::Set(d, height[one]) : pick(height, level);
     const Pair x = texel_pair(s, columns, p.wrap_u), y = texel_pair(t, rows, p.wrap_v);
     const Vi stride = hn::ConvertTo(di, columns), step = hn::Sub(x.second, x.first);
+    const V fy = from_nearer(y.fraction);
+    const auto lower = hn::RebindMask(di, is_second_nearer(fy));
     const auto offset = [&](Vi row)
                             HWY_ATTR { return hn::ShiftLeft<2>(hn::Add(hn::Mul(row, stride), x.first)); };
+    const Vi nearer = offset(hn::IfThenElse(lower, y.second, y.first)),
+             other = offset(hn::IfThenElse(lower, y.first, y.second));
     if (same) {
-      find_rows(rgba[one], offset(y.first), taps.row[0]);
-      find_rows(rgba[one], offset(y.second), taps.row[1]);
+      find_rows(rgba[one], nearer, taps.row[0]);
+      find_rows(rgba[one], other, taps.row[1]);
     } else {
-      find_mixed_rows(level, offset(y.first), offset(y.second), taps);
+      find_mixed_rows(level, nearer, other, taps);
     }
     // A small level stays in the cache, and along one row of a large one the processor fetches ahead by itself.
     const bool known = same && (width[one] * height[one] <= cached_texels ||
@@ -342,7 +391,7 @@ struct LevelTable {
     }
     hn::Store(hn::ShiftLeft<2>(step), di, taps.step);
     taps.adjacent = hn::AllTrue(di, hn::Eq(step, hn::Set(di, 1)));
-    taps.fx = x.fraction, taps.fy = y.fraction;
+    taps.fx = from_nearer(x.fraction), taps.fy = hn::Abs(fy);
   }
 };
 
@@ -367,8 +416,9 @@ struct PyramidPoints {
     if (kind == Lookup::trilinear)
       level = pyramid_level(row, p.levels[0], static_cast<int>(p.levels.size()) - 1);
     const Vi fine = hn::ConvertTo(di, level);
-    fraction = hn::Sub(level, hn::ConvertTo(d, fine));
-    blends = !hn::AllFalse(d, hn::Gt(fraction, hn::Zero(d)));
+    const V beyond = hn::Sub(level, hn::ConvertTo(d, fine));
+    blends = !hn::AllFalse(d, hn::Gt(beyond, hn::Zero(d)));
+    fraction = from_nearer(beyond);
     table.find_taps(p, s, t, fine, near);
     if (blends) table.find_taps(p, s, t, hn::Add(fine, hn::Set(di, 1)), far);
   }
@@ -384,7 +434,7 @@ struct PyramidPoints {
       V c = fetch(near, g);
       if (blends) {
         const V f = spread(fraction, g);
-        c = hn::IfThenElse(hn::Gt(f, hn::Zero(d)), blend(c, fetch(far, g), f), c);
+        c = hn::IfThenElse(hn::Ne(f, hn::Zero(d)), blend(c, fetch(far, g), f), c);
       }
       hn::Store(c, d, color + g * hn::Lanes(d));
     }
