@@ -75,7 +75,6 @@ struct ColorSum {
 template <class Sum, std::floating_point R>
 Rgba<R> ellipse_mean(const TexelPyramid& p, const TexelLevel& level, R x, R y, R ss, R st, R tt) {
   static constexpr float border[4] = {};
-  const auto width = static_cast<std::size_t>(level.width);
   const Rgba<R> base =
       texel<R>(level, wrapped(static_cast<int>(std::floor(x + R(0.5))), level.width, p.wrap_u),
                wrapped(static_cast<int>(std::floor(y + R(0.5))), level.height, p.wrap_v));
@@ -83,12 +82,12 @@ Rgba<R> ellipse_mean(const TexelPyramid& p, const TexelLevel& level, R x, R y, R
   R weights = 0;
   visit_ellipse(x, y, ss, st, tt, [&](const EllipseRow<R>& row) {
     const int v = wrapped(row.row, level.height, p.wrap_v);
-    const float* texels = v < 0 ? nullptr : level.rgba + static_cast<std::size_t>(v) * width * 4;
     for (int i = row.first; i <= row.last; ++i) {
       const R w = row.weight(i);
       if (!(w > R(0))) continue;
       const int u = wrapped(i, level.width, p.wrap_u);
-      sum.add(u < 0 || texels == nullptr ? border : texels + static_cast<std::size_t>(u) * 4, w);
+      std::array<float, 4> copy;
+      sum.add((u | v) < 0 ? border : texel_numbers(level, u, v, copy), w);
       weights += w;
     }
   });

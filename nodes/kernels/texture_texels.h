@@ -4,6 +4,8 @@
 // them.
 #pragma once
 
+#include "nodes/kernels/half.h"
+
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -37,9 +39,11 @@ struct RgbaRows {
 /// border: transparent black beyond the picture.
 enum class EdgeRule : std::uint8_t { repeat, clamp, mirror, border };
 
+/// height x width x 4 numbers, row 0 is v = 1: as they are, or as binary16.
 struct TexelLevel {
   int width = 0, height = 0;
-  const float* rgba = nullptr;  ///< height x width x 4, row 0 is v = 1
+  const float* rgba = nullptr;
+  const std::uint16_t* half_rgba = nullptr;  ///< where rgba is null
 };
 
 struct TexelPyramid {
@@ -124,13 +128,21 @@ Rgba<R> over_levels(R level, const At& at) {
   return fraction > R(0) ? between(c, at(fine + 1), fraction) : c;
 }
 
+/// The four numbers of the texel in column x of row y, both within the level: where they lie, or in `copy`.
+inline const float* texel_numbers(const TexelLevel& level, int x, int y, std::array<float, 4>& copy) {
+  const std::size_t at =
+      (static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) + static_cast<std::size_t>(x)) * 4;
+  if (level.rgba != nullptr) return level.rgba + at;
+  for (std::size_t k = 0; k < 4; ++k) copy[k] = from_half(level.half_rgba[at + k]);
+  return copy.data();
+}
+
 /// The texel in column x of row y; transparent black where one of them is -1.
 template <std::floating_point R>
 Rgba<R> texel(const TexelLevel& level, int x, int y) {
   if ((x | y) < 0) return {};
-  const float* t =
-      level.rgba +
-      (static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) + static_cast<std::size_t>(x)) * 4;
+  std::array<float, 4> copy;
+  const float* t = texel_numbers(level, x, y, copy);
   return {t[0], t[1], t[2], t[3]};
 }
 

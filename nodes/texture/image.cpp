@@ -9,12 +9,18 @@
 namespace frustum {
 namespace {
 
+enum class Storage : std::uint8_t { single, half };
+constexpr auto choices(Storage) {
+  return std::array{std::pair{Storage::single, "single"}, std::pair{Storage::half, "half"}};
+}
+
 struct Inputs {
   Ref<Image> image;
 };
 struct Params {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   bool pyramid = true;
+  Storage storage = Storage::single;
   double alpha_cutoff = 0;
 };
 struct Outputs {
@@ -22,9 +28,13 @@ struct Outputs {
 };
 
 Outputs run(const Inputs& in, const Params& p, Context& ctx) {
-  auto texture = make_texture(
-      in.image->raster,
-      {.wrap_u = p.wrap_u, .wrap_v = p.wrap_v, .pyramid = p.pyramid, .alpha_cutoff = p.alpha_cutoff}, ctx);
+  auto texture = make_texture(in.image->raster,
+                              {.wrap_u = p.wrap_u,
+                               .wrap_v = p.wrap_v,
+                               .pyramid = p.pyramid,
+                               .alpha_cutoff = p.alpha_cutoff,
+                               .half = p.storage == Storage::half},
+                              ctx);
   const Rect window = in.image->raster.frame().window;
   ctx.count("levels",
             p.pyramid ? static_cast<std::uint64_t>(pyramid_levels(window.width(), window.height())) : 1);
@@ -46,6 +56,9 @@ NodeType nodes::texture_image() {
           .param("wrap_v", &Params::wrap_v, "What lies beyond v = 0 and 1; border is transparent black.")
           .param("pyramid", &Params::pyramid,
                  "Whether smaller levels are made, which trilinear lookup needs; a third more memory.")
+          .param("storage", &Params::storage,
+                 "What texels are kept in: half has 11 bits, up to 65504, and reads half as much memory.")
+          .knob({"half", "single"}, "Each texel of half is off by at most 2^-11 of itself.")
           .param(
               "alpha_cutoff", &Params::alpha_cutoff,
               "Above 0, what is looked up with less opacity is not there, and the rest is opaque; 0 blends.",

@@ -13,7 +13,9 @@ std::vector<kernels::TexelLevel> texel_levels(const Texture& texture) {
   for (const MipPyramid::Level& l : pyramid->levels) {
     if (l.width < 1 || l.height < 1)
       throw NodeError("empty_texture", "the texture has no texels", at_input("texture"));
-    levels.push_back({l.width, l.height, l.rgba.data()});
+    const bool half = !l.half_rgba.empty();
+    levels.push_back(
+        {l.width, l.height, half ? nullptr : l.rgba.data(), half ? l.half_rgba.data() : nullptr});
   }
   return levels;
 }

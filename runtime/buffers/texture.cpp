@@ -1,5 +1,6 @@
 #include "runtime/buffers/texture.h"
 
+#include "nodes/kernels/half.h"
 #include "runtime/buffers/buffer_ops.h"
 #include "runtime/buffers/numbers.h"
 
@@ -24,7 +25,10 @@ Health health_of(const MipPyramid& p) {
   Health sum;
   for (std::size_t l = 0; l < p.levels.size(); ++l) {
     const auto& level = p.levels[l];
-    sum.add(to_health(scan(std::span<const float>(level.rgba)), level.rgba.size(), [&](std::size_t i) {
+    const std::vector<float> wide =
+        level.half_rgba.empty() ? std::vector<float>() : level.numbers(0, level.size());
+    const std::span<const float> numbers = level.half_rgba.empty() ? std::span(level.rgba) : std::span(wide);
+    sum.add(to_health(scan(numbers), numbers.size(), [&](std::size_t i) {
       const std::size_t texel = i / 4, width = static_cast<std::size_t>(level.width);
       return fmt::format("level {}, texel {},{}", l, texel % width, texel / width);
     }));
@@ -37,9 +41,16 @@ void hash_source(const Checker& c, Hasher& h) {
   for (const glm::dvec3& v : {c.even, c.odd}) h.value(v.x).value(v.y).value(v.z);
 }
 
+void hash_numbers(const MipPyramid::Level& level, Hasher& h) {
+  if (level.half_rgba.empty())
+    h.span<float>(level.rgba);
+  else
+    h.span<std::uint16_t>(level.half_rgba);
+}
+
 void hash_source(const MipPyramid& p, Hasher& h) {
   h.value(p.wrap_u).value(p.wrap_v).value(p.alpha_cutoff).value(p.levels.size());
-  for (const auto& level : p.levels) h.value(level.width).value(level.height).span<float>(level.rgba);
+  for (const auto& level : p.levels) hash_numbers(level, h.value(level.width).value(level.height));
 }
 
 Json summary_of(const Checker& c) {
@@ -51,18 +62,20 @@ Json summary_of(const MipPyramid& p) {
   Json levels = Json::array();
   for (const auto& level : p.levels) {
     Hasher h;
-    h.span<float>(level.rgba);
+    hash_numbers(level, h);
     levels.push_back({{"width", level.width}, {"height", level.height}, {"digest", to_hex(h.done())}});
   }
   Json channels = Json::array();
   for (std::size_t k = 0; k < 4 && !p.levels.empty(); ++k) {
     std::vector<float> values;
-    for (std::size_t i = k; i < p.levels[0].rgba.size(); i += 4) values.push_back(p.levels[0].rgba[i]);
+    for (std::size_t i = k; i < p.levels[0].size(); i += 4) values.push_back(p.levels[0].number(i));
     Json channel = {{"name", std::string(1, "RGBA"[k])}};
     channel.update(to_json(measure(std::move(values))));
     channels.push_back(std::move(channel));
   }
+  const bool half = !p.levels.empty() && !p.levels[0].half_rgba.empty();
   Json out = {{"source", "image"},
+              {"storage", half ? "half" : "single"},
               {"wrap_u", choices(p.wrap_u)[static_cast<std::size_t>(p.wrap_u)].second},
               {"wrap_v", choices(p.wrap_v)[static_cast<std::size_t>(p.wrap_v)].second},
               {"levels", std::move(levels)},
@@ -84,10 +97,15 @@ struct Ops {
     if (const auto* p = std::get_if<MipPyramid>(&t.source)) {
       w.value(p->wrap_u).value(p->wrap_v).value(p->alpha_cutoff).value(std::uint64_t{p->levels.size()});
       for (const auto& level : p->levels) {
-        w.value(level.width).value(level.height).value(std::uint64_t{level.rgba.size()});
+        const bool half = !level.half_rgba.empty();
+        w.value(level.width)
+            .value(level.height)
+            .value(std::uint64_t{half})
+            .value(std::uint64_t{level.size()});
         // Apart and by content, since every mesh of a scene carries its textures along. Nobody owns a
         // pointer into a vector; it is only read here.
-        w.shared({std::shared_ptr<const void>(), level.rgba.data()}, level.rgba.size() * sizeof(float));
+        const void* numbers = half ? static_cast<const void*>(level.half_rgba.data()) : level.rgba.data();
+        w.shared({std::shared_ptr<const void>(), numbers}, level.bytes());
       }
     }
   }
@@ -104,12 +122,18 @@ struct Ops {
     p.alpha_cutoff = r.value<double>();
     for (std::size_t n = r.count(1); n > 0; --n) {
       const int width = r.value<int>(), height = r.value<int>();
+      const bool half = r.choice<std::uint64_t>(1) == 1;
       const auto values = r.value<std::uint64_t>();
       if (width < 0 || height < 0 || values != 4 * static_cast<std::uint64_t>(std::int64_t{width} * height))
         throw ArchiveError("a level of another size");
-      const auto storage = r.shared(values * sizeof(float));
-      const auto* rgba = static_cast<const float*>(storage.get());
-      p.levels.push_back({width, height, {rgba, rgba + values}});
+      const auto storage = r.shared(values * (half ? sizeof(std::uint16_t) : sizeof(float)));
+      MipPyramid::Level level{width, height, {}};
+      const auto read = [&](auto& into) {
+        const auto* first = static_cast<decltype(into.data())>(const_cast<void*>(storage.get()));
+        into.assign(first, first + values);
+      };
+      half ? read(level.half_rgba) : read(level.rgba);
+      p.levels.push_back(std::move(level));
     }
     return {std::move(p)};
   }
@@ -119,6 +143,16 @@ struct Ops {
 };
 
 }  // namespace
+
+float MipPyramid::Level::number(std::size_t i) const {
+  return half_rgba.empty() ? rgba[i] : kernels::from_half(half_rgba[i]);
+}
+
+std::vector<float> MipPyramid::Level::numbers(std::size_t first, std::size_t count) const {
+  std::vector<float> out(count);
+  for (std::size_t i = 0; i < count; ++i) out[i] = number(first + i);
+  return out;
+}
 
 struct Texture::Memo {
   std::once_flag hashed, counted;
@@ -132,7 +166,7 @@ Texture::Texture(std::variant<Checker, MipPyramid> from)
 std::size_t Texture::bytes() const {
   std::size_t sum = sizeof *this;
   if (const auto* p = std::get_if<MipPyramid>(&source))
-    for (const auto& level : p->levels) sum += level.rgba.size() * sizeof(float);
+    for (const auto& level : p->levels) sum += level.bytes();
   return sum;
 }
 

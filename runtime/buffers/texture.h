@@ -28,11 +28,20 @@ struct Checker {
 };
 
 // Level 0 is the image; each further level halves both sides (rounding down, at least 1) by exact area
-// averages. Texel rows are RGBA f32, linear light, premultiplied; row 0 is v = 1 (the top of the picture).
+// averages. Texel rows are RGBA, linear light, premultiplied; row 0 is v = 1 (the top of the picture).
 struct MipPyramid {
+  // Numbers are f32, or binary16 (nodes/kernels/half.h): of all levels of a pyramid alike.
   struct Level {
     int width = 0, height = 0;
-    std::vector<float> rgba;  // height x width x 4
+    std::vector<float> rgba;                    // height x width x 4
+    std::vector<std::uint16_t> half_rgba = {};  // instead of rgba
+
+    std::size_t size() const { return rgba.size() + half_rgba.size(); }  // of numbers
+    float number(std::size_t i) const;
+    std::vector<float> numbers(std::size_t first, std::size_t count) const;
+    std::size_t bytes() const {
+      return rgba.size() * sizeof(float) + half_rgba.size() * sizeof(std::uint16_t);
+    }
   };
   std::vector<Level> levels;
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;

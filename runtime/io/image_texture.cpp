@@ -1,5 +1,6 @@
 #include "runtime/io/image_texture.h"
 
+#include "nodes/kernels/half.h"
 #include "nodes/kernels/image_pyramid.h"
 #include "runtime/buffers/image.h"
 #include "runtime/core/error.h"
@@ -9,6 +10,8 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <optional>
 
 namespace frustum {
@@ -90,6 +93,26 @@ MipPyramid::Level next_level(const MipPyramid::Level& from) {
   return to;
 }
 
+// Puts the numbers of a level into 16 bits. A mean goes no further than what it is of: only the first level can fail.
+void halve_numbers(MipPyramid::Level& level) {
+  const std::size_t row = 4 * static_cast<std::size_t>(level.width);
+  level.half_rgba.resize(level.rgba.size());
+  tbb::parallel_for(0, level.height, [&](int y) {
+    const std::size_t first = row * static_cast<std::size_t>(y);
+    for (std::size_t i = first; i < first + row; ++i) {
+      const float n = level.rgba[i];
+      if (std::abs(n) > kernels::most_half)
+        throw NodeError(
+            "beyond_half",
+            fmt::format("texel {},{} of the picture holds {:.6g}, and half goes to {}: store it in single",
+                        (i - first) / 4, y, n, kernels::most_half),
+            at_param("storage"));
+      level.half_rgba[i] = kernels::to_half(n);
+    }
+  });
+  level.rgba = {};
+}
+
 }  // namespace
 
 Ref<Texture> make_texture(const Raster& picture, const TextureOptions& options, Context& ctx) {
@@ -103,7 +126,9 @@ Ref<Texture> make_texture(const Raster& picture, const TextureOptions& options, 
   while (options.pyramid && (pyramid.levels.back().width > 1 || pyramid.levels.back().height > 1)) {
     ctx.poll();
     pyramid.levels.push_back(next_level(pyramid.levels.back()));
+    if (options.half) halve_numbers(*std::prev(pyramid.levels.end(), 2));
   }
+  if (options.half) halve_numbers(pyramid.levels.back());
   return std::make_shared<const Texture>(std::move(pyramid));
 }
 

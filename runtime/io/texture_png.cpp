@@ -31,7 +31,7 @@ TexturePng texture_png(const MipPyramid& texture, std::string_view name) {
   const MipPyramid::Level& level = texture.levels.at(0);
   const auto width = static_cast<std::size_t>(level.width);
   bool opaque = true;
-  for (std::size_t i = 3; i < level.rgba.size(); i += 4) opaque = opaque && level.rgba[i] == 1;
+  for (std::size_t i = 3; i < level.size(); i += 4) opaque = opaque && level.number(i) == 1;
   Frame frame{.window = {0, 0, level.width, level.height},
               .planes = {{"R", PlaneKind::f32}, {"G", PlaneKind::f32}, {"B", PlaneKind::f32}},
               .color_space = "srgb",
@@ -45,7 +45,7 @@ TexturePng texture_png(const MipPyramid& texture, std::string_view name) {
   for (int y = 0; y < level.height; ++y) {
     std::array<float*, 4> row{};
     for (int k = 0; k < (opaque ? 3 : 4); ++k) row[static_cast<std::size_t>(k)] = tile.row<float>(k, 0, y);
-    straight_row(level.rgba.data() + 4 * width * static_cast<std::size_t>(y), width, row);
+    straight_row(level.numbers(4 * width * static_cast<std::size_t>(y), 4 * width).data(), width, row);
     conversion.apply(row[0], row[1], row[2], width);
     for (const float* channel : row)
       for (std::size_t x = 0; x < width && channel != nullptr; ++x) {

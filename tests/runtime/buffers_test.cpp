@@ -285,6 +285,13 @@ TEST(Texture, DigestTellsLevelsApart) {
   MipPyramid bad = one;
   bad.levels[0].rgba[5] = inf;
   EXPECT_EQ(buffer(Texture{bad}).health().first, "level 0, texel 0,1");
+  MipPyramid half{{{1, 2, {}}}};
+  half.levels[0].half_rgba.assign(8, 0x3C00);  // 1
+  EXPECT_NE(buffer(Texture{half}).digest(), buffer(Texture{one}).digest());
+  EXPECT_TRUE(buffer(Texture{half}).health().finite());
+  EXPECT_EQ(Texture{one}.bytes() - Texture{half}.bytes(), 16u);
+  half.levels[0].half_rgba[6] = 0x7C00;  // infinity
+  EXPECT_EQ(buffer(Texture{half}).health().first, "level 0, texel 0,1");
 }
 
 TEST(Material, ASharedTextureCountsOnceAndItsTexelsAreOfTheDigest) {

@@ -91,6 +91,8 @@ std::vector<Buffer> one_of_each() {
   MipPyramid pyramid;
   pyramid.levels = {{2, 1, {1, 2, 3, 4, 5, 6, 7, 8}}, {1, 1, {9, 9, 9, 9}}};
   pyramid.wrap_v = Wrap::mirror, pyramid.alpha_cutoff = 0.5;
+  MipPyramid half;
+  half.levels = {{2, 1, {}, {0, 0x3C00, 0xBC00, 0x7BFF, 1, 2, 3, 4}}};
   Table table;
   table.columns = {{.name = "edge", .unit = "px", .numbers = {1, 2.5}},
                    {.name = "why", .texts = {"", "a\0b"}}};
@@ -114,6 +116,7 @@ std::vector<Buffer> one_of_each() {
           made(surface),
           made(pattern),
           made(Texture{pyramid}),
+          made(Texture{half}),
           made(Texture{Checker{.scale = 3}}),
           made(table),
           made(lights),

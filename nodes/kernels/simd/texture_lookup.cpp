@@ -204,14 +204,30 @@ struct Taps {
   V fx, fy;                                  // as from_nearer gives them; fy without its sign
 };
 
-HWY_INLINE const float* texel_at(std::int64_t address) { return reinterpret_cast<const float*>(address); }
+// Numbers of textures are float, or std::uint16_t that hold binary16.
+template <class T>
+HWY_INLINE const T* texel_at(std::int64_t address) {
+  return reinterpret_cast<const T*>(address);
+}
+
+template <class Df>
+HWY_INLINE hn::Vec<Df> load(Df d, const float* from) {
+  return hn::LoadU(d, from);
+}
+template <class Df>
+HWY_INLINE hn::Vec<Df> load(Df d, const std::uint16_t* from) {
+  const hn::Rebind<std::uint16_t, Df> d_bits;
+  const hn::Rebind<hwy::float16_t, Df> d_half;
+  return hn::PromoteTo(d, hn::BitCast(d_half, hn::LoadU(d_bits, from)));
+}
 
 // The addresses of the numbers that stand `offset` after `from`.
-HWY_INLINE void find_rows(const float* from, Vi offset, std::int64_t* to) {
+template <class T>
+HWY_INLINE void find_rows(const T* from, Vi offset, std::int64_t* to) {
   const hn::RepartitionToWide<Di> dw;
   const auto at = hn::Set(dw, reinterpret_cast<std::int64_t>(from));
   const auto half = [&](auto part, std::int64_t* address) HWY_ATTR {
-    hn::Store(hn::Add(at, hn::ShiftLeft<2>(hn::PromoteTo(dw, part))), dw, address);
+    hn::Store(hn::Add(at, hn::ShiftLeft<sizeof(T) / 2>(hn::PromoteTo(dw, part))), dw, address);
   };
   half(hn::LowerHalf(offset), to);
   half(hn::UpperHalf(hn::Half<Di>(), offset), to + hn::Lanes(dw));
@@ -241,17 +257,19 @@ HWY_INLINE V spread_to_pairs(V of, std::size_t g, std::size_t part) {
 
 // Pairs from the addresses of their first texels; their first ones and their second ones; and texels one a block.
 #if HWY_MAX_BYTES >= 64
-HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
+template <class T>
+HWY_INLINE V load_blocks(const T* const (&from)[max_lanes / 4]) {
   const hn::Half<D> dh;
   const D4 d4;
-  return hn::Combine(D(), hn::Combine(dh, hn::LoadU(d4, from[3]), hn::LoadU(d4, from[2])),
-                     hn::Combine(dh, hn::LoadU(d4, from[1]), hn::LoadU(d4, from[0])));
+  return hn::Combine(D(), hn::Combine(dh, load(d4, from[3]), load(d4, from[2])),
+                     hn::Combine(dh, load(d4, from[1]), load(d4, from[0])));
 }
+template <class T>
 HWY_INLINE Pairs load_pairs(const std::int64_t* from) {
   const D d;
   const hn::Half<D> dh;
-  return {{hn::Combine(d, hn::LoadU(dh, texel_at(from[2])), hn::LoadU(dh, texel_at(from[0]))),
-           hn::Combine(d, hn::LoadU(dh, texel_at(from[3])), hn::LoadU(dh, texel_at(from[1])))}};
+  return {{hn::Combine(d, load(dh, texel_at<T>(from[2])), load(dh, texel_at<T>(from[0]))),
+           hn::Combine(d, load(dh, texel_at<T>(from[3])), load(dh, texel_at<T>(from[1])))}};
 }
 HWY_INLINE V first_of(const Pairs& p) {
   return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(p.part[1]), p.part[0]);
@@ -260,21 +278,27 @@ HWY_INLINE V second_of(const Pairs& p) {
   return hn::OddEvenBlocks(p.part[1], hn::SwapAdjacentBlocks(p.part[0]));
 }
 #elif HWY_MAX_BYTES == 32
-HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) {
+template <class T>
+HWY_INLINE V load_blocks(const T* const (&from)[max_lanes / 4]) {
   const D4 d4;
-  return hn::Combine(D(), hn::LoadU(d4, from[1]), hn::LoadU(d4, from[0]));
+  return hn::Combine(D(), load(d4, from[1]), load(d4, from[0]));
 }
+template <class T>
 HWY_INLINE Pairs load_pairs(const std::int64_t* from) {
   const D d;
-  return {{hn::LoadU(d, texel_at(from[0])), hn::LoadU(d, texel_at(from[1]))}};
+  return {{load(d, texel_at<T>(from[0])), load(d, texel_at<T>(from[1]))}};
 }
 HWY_INLINE V first_of(const Pairs& p) { return hn::ConcatLowerLower(D(), p.part[1], p.part[0]); }
 HWY_INLINE V second_of(const Pairs& p) { return hn::ConcatUpperUpper(D(), p.part[1], p.part[0]); }
 #else
-HWY_INLINE V load_blocks(const float* const (&from)[max_lanes / 4]) { return hn::LoadU(D(), from[0]); }
+template <class T>
+HWY_INLINE V load_blocks(const T* const (&from)[max_lanes / 4]) {
+  return load(D(), from[0]);
+}
+template <class T>
 HWY_INLINE Pairs load_pairs(const std::int64_t* from) {
   const D d;
-  return {{hn::LoadU(d, texel_at(from[0])), hn::LoadU(d, texel_at(from[0]) + 4)}};
+  return {{load(d, texel_at<T>(from[0])), load(d, texel_at<T>(from[0]) + 4)}};
 }
 HWY_INLINE V first_of(const Pairs& p) { return p.part[0]; }
 HWY_INLINE V second_of(const Pairs& p) { return p.part[1]; }
@@ -297,20 +321,21 @@ HWY_INLINE V blend(V a, V b, V f) {
   return towards(hn::IfThenElse(second, b, a), hn::IfThenElse(second, a, b), hn::Abs(f));
 }
 
+template <class T>
 HWY_INLINE V fetch(const Taps& taps, std::size_t g) {
   const std::int64_t *nearer = taps.row[0] + g * blocks(), *other = taps.row[1] + g * blocks();
   V first, second;
   if (taps.adjacent) {
-    Pairs down = load_pairs(nearer);
-    const Pairs beyond = load_pairs(other);
+    Pairs down = load_pairs<T>(nearer);
+    const Pairs beyond = load_pairs<T>(other);
     for (std::size_t i = 0; i < 2; ++i)
       down.part[i] = towards(down.part[i], beyond.part[i], spread_to_pairs(taps.fy, g, i));
     first = first_of(down), second = second_of(down);
   } else {
     const V fy = spread(taps.fy, g);
-    const float* at[2][2][max_lanes / 4];  // by column and row
+    const T* at[2][2][max_lanes / 4];  // by column and row
     for (std::size_t b = 0; b < blocks(); ++b) {
-      at[0][0][b] = texel_at(nearer[b]), at[0][1][b] = texel_at(other[b]);
+      at[0][0][b] = texel_at<T>(nearer[b]), at[0][1][b] = texel_at<T>(other[b]);
       const std::int32_t step = taps.step[g * blocks() + b];
       at[1][0][b] = at[0][0][b] + step, at[1][1][b] = at[0][1][b] + step;
     }
@@ -320,18 +345,22 @@ HWY_INLINE V fetch(const Taps& taps, std::size_t g) {
   return blend(first, second, spread(taps.fx, g));
 }
 
-constexpr float cached_texels = 128 * 128;  // 256 KB: a quarter of a core's second cache
+constexpr float cached_bytes = 256 << 10;  // a quarter of a core's second cache
 
 // What is read of the levels of a pyramid, level by level; one more than there are, which is the last again.
+template <class T>
 struct LevelTable {
-  const float* rgba[33];
+  const T* rgba[33];
   HWY_ALIGN float width[33 + max_lanes] = {}, height[33 + max_lanes] = {};
   std::size_t count;
 
   explicit LevelTable(const TexelPyramid& p) : count(p.levels.size() + 1) {
     for (std::size_t i = 0; i < count; ++i) {
       const TexelLevel& level = p.levels[std::min(i, p.levels.size() - 1)];
-      rgba[i] = level.rgba;
+      if constexpr (sizeof(T) == sizeof(float))
+        rgba[i] = level.rgba;
+      else
+        rgba[i] = level.half_rgba;
       width[i] = static_cast<float>(level.width), height[i] = static_cast<float>(level.height);
     }
   }
@@ -383,11 +412,11 @@ struct LevelTable {
       find_mixed_rows(level, nearer, other, taps);
     }
     // A small level stays in the cache, and along one row of a large one the processor fetches ahead by itself.
-    const bool known = same && (width[one] * height[one] <= cached_texels ||
+    const bool known = same && (width[one] * height[one] * (4 * sizeof(T)) <= cached_bytes ||
                                 hn::AllTrue(di, hn::Eq(y.first, hn::Set(di, hn::GetLane(y.first)))));
     for (std::size_t lane = 0; lane < hn::Lanes(di) && !known; ++lane) {
-      hwy::Prefetch(texel_at(taps.row[0][lane]));
-      hwy::Prefetch(texel_at(taps.row[1][lane]));
+      hwy::Prefetch(texel_at<T>(taps.row[0][lane]));
+      hwy::Prefetch(texel_at<T>(taps.row[1][lane]));
     }
     hn::Store(hn::ShiftLeft<2>(step), di, taps.step);
     taps.adjacent = hn::AllTrue(di, hn::Eq(step, hn::Set(di, 1)));
@@ -396,13 +425,14 @@ struct LevelTable {
 };
 
 // One vector of points of bilinear or trilinear lookup, in two steps: where it reads, and the reading.
+template <class T>
 struct PyramidPoints {
   M inside;
   bool any, blends;
   V fraction;
   Taps near, far;
 
-  HWY_INLINE void find(const TexelPyramid& p, const LevelTable& table, Lookup kind,
+  HWY_INLINE void find(const TexelPyramid& p, const LevelTable<T>& table, Lookup kind,
                        const UvRows<float>& row) {
     const D d;
     const Di di;
@@ -431,10 +461,10 @@ struct PyramidPoints {
     }
     HWY_ALIGN float color[4 * max_lanes];
     for (std::size_t g = 0; g < 4; ++g) {
-      V c = fetch(near, g);
+      V c = fetch<T>(near, g);
       if (blends) {
         const V f = spread(fraction, g);
-        c = hn::IfThenElse(hn::Ne(f, hn::Zero(d)), blend(c, fetch(far, g), f), c);
+        c = hn::IfThenElse(hn::Ne(f, hn::Zero(d)), blend(c, fetch<T>(far, g), f), c);
       }
       hn::Store(c, d, color + g * hn::Lanes(d));
     }
@@ -465,22 +495,33 @@ void look_up_ellipses(const TexelPyramid& p, const Filtering& filter, const UvRo
                             : Rgba<float>{});
 }
 
+// Of `n` points, a whole number of vectors.
+template <class T>
+void look_up_vectors(const TexelPyramid& p, const Filtering& filter, const UvRows<float>& in, std::size_t n,
+                     const RgbaRows<float>& out) {
+  // The texels of so many vectors are asked for before the first is read: textures are larger than caches.
+  constexpr std::size_t ahead = 4;
+  const std::size_t lanes = hn::Lanes(D());
+  const LevelTable<T> table(p);
+  PyramidPoints<T> points[ahead];
+  for (std::size_t x = 0; x < n; x += ahead * lanes) {
+    const std::size_t count = std::min(ahead, (n - x) / lanes);
+    for (std::size_t i = 0; i < count; ++i)
+      points[i].find(p, table, filter.kind, advanced(in, x + i * lanes));
+    for (std::size_t i = 0; i < count; ++i) points[i].read(advanced(out, x + i * lanes));
+  }
+}
+
 void look_up_pyramid(const TexelPyramid& p, const Filtering& filter, const UvRows<float>& in, std::size_t n,
                      const RgbaRows<float>& out) {
   if (filter.kind == Lookup::ewa) return look_up_ellipses(p, filter, in, n, out);
   if ((filter.kind != Lookup::bilinear && filter.kind != Lookup::trilinear) || p.has_border())
     return kernels::look_up(p, filter, in, n, out);
-  // The texels of so many vectors are asked for before the first is read: textures are larger than caches.
-  constexpr std::size_t ahead = 4;
-  const std::size_t lanes = hn::Lanes(D()), whole = n / lanes * lanes;
-  const LevelTable table(p);
-  PyramidPoints points[ahead];
-  for (std::size_t x = 0; x < whole; x += ahead * lanes) {
-    const std::size_t count = std::min(ahead, (whole - x) / lanes);
-    for (std::size_t i = 0; i < count; ++i)
-      points[i].find(p, table, filter.kind, advanced(in, x + i * lanes));
-    for (std::size_t i = 0; i < count; ++i) points[i].read(advanced(out, x + i * lanes));
-  }
+  const std::size_t whole = n / hn::Lanes(D()) * hn::Lanes(D());
+  if (p.levels[0].rgba != nullptr)
+    look_up_vectors<float>(p, filter, in, whole, out);
+  else
+    look_up_vectors<std::uint16_t>(p, filter, in, whole, out);
   if (whole < n) kernels::look_up(p, filter, advanced(in, whole), n - whole, advanced(out, whole));
 }
 

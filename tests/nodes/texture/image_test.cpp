@@ -1,6 +1,7 @@
 #include "nodes/texture/image.h"
 
 #include "nodes/io.h"
+#include "nodes/kernels/half.h"
 #include "nodes/kernels/image_pyramid.h"
 #include "nodes/texture.h"
 #include "runtime/buffers/image.h"
@@ -135,6 +136,67 @@ std::string problem(Image image) {
   return test::run_error(nodes::texture_image(), Json::object(),
                          {{std::make_shared<const Image>(std::move(image))}})
       .first;
+}
+
+TEST(TextureImage, HalfKeepsElevenBitsInHalfTheMemory) {
+  const Raster r(
+      Frame{.window = {0, 0, 37, 12}, .planes = {{"R"}, {"G"}, {"B"}}, .color_space = "lin_rec709"});
+  test::Random random(4);
+  for (int k = 0; k < 3; ++k)
+    for (int y = 0; y < 12; ++y)
+      for (int x = 0; x < 37; ++x)
+        r.view().row<float>(k, 0, y)[x] =
+            std::ldexp(static_cast<float>(random.uniform()), static_cast<int>(random.below(30)) - 14);
+  r.view().row<float>(0, 0, 3)[5] = -kernels::most_half;
+  r.view().row<float>(1, 0, 3)[5] = std::nanf("");
+  const MipPyramid single = texture_of({r}), half = texture_of({r}, {{"storage", "half"}});
+  ASSERT_EQ(half.levels.size(), single.levels.size());
+  for (std::size_t l = 0; l < single.levels.size(); ++l) {
+    const auto& wide = single.levels[l];
+    ASSERT_EQ(half.levels[l].size(), wide.size());
+    EXPECT_EQ(half.levels[l].bytes() * 2, wide.bytes());
+    for (std::size_t i = 0; i < wide.size(); ++i) {
+      const float is = half.levels[l].number(i), should = wide.number(i);
+      if (std::isnan(should))
+        EXPECT_TRUE(std::isnan(is));
+      else
+        EXPECT_LE(std::abs(is - should), std::max(std::abs(should) * 0x1p-11F, 0x1p-25F)) << l << " " << i;
+    }
+  }
+  EXPECT_EQ(half.levels[0].number(4 * (3 * 37 + 5)), -65504);
+}
+
+TEST(TextureImage, HalfRefusesWhatItDoesNotReach) {
+  for (const float n : {65505.0F, -1e5F, std::numeric_limits<float>::infinity()}) {
+    const Raster r(Frame{.window = {0, 0, 4, 4}, .planes = {{"height"}}});
+    r.view().row<float>(0, 0, 2)[1] = n;
+    try {
+      texture_of({r}, {{"storage", "half"}});
+      FAIL() << n;
+    } catch (const NodeError& e) {
+      EXPECT_EQ(e.code, "beyond_half");
+      EXPECT_THAT(e.what(), testing::HasSubstr("texel 1,2"));
+    }
+    texture_of({r});
+  }
+}
+
+// Every pattern of 16 bits goes there and back, and numbers between two go to the nearer.
+TEST(Half, RoundsToTheNearest) {
+  for (std::uint32_t bits = 0; bits < 0x7C00; ++bits) {
+    const auto h = static_cast<std::uint16_t>(bits);
+    const float x = kernels::from_half(h);
+    ASSERT_EQ(kernels::to_half(x), h);
+    ASSERT_EQ(kernels::to_half(-x), h | 0x8000);
+    const double exact = (bits & 0x7C00) == 0
+                             ? std::ldexp(bits & 0x3FF, -24)
+                             : std::ldexp(1024 + (bits & 0x3FF), static_cast<int>(bits >> 10) - 25);
+    ASSERT_EQ(static_cast<double>(x), exact);
+    if (bits == 0x7BFF) break;
+    const float next = kernels::from_half(static_cast<std::uint16_t>(bits + 1)), middle = (x + next) / 2;
+    ASSERT_EQ(kernels::to_half(std::nextafter(middle, x)), h);
+    ASSERT_EQ(kernels::to_half(std::nextafter(middle, next)), h + 1);
+  }
 }
 
 TEST(TextureImage, RefusesWhatIsNoPicture) {

@@ -1,5 +1,6 @@
 // texture.sample: pyramids and checkerboards against closed forms, and the vector kernels against their
 // scalar twins.
+#include "nodes/kernels/half.h"
 #include "nodes/kernels/simd/texture_lookup.h"
 #include "nodes/texture.h"
 #include "runtime/buffers/mesh.h"
@@ -33,8 +34,22 @@ MipPyramid random_pyramid(int width, int height, Wrap u, Wrap v) {
 
 std::vector<kernels::TexelLevel> levels_of(const MipPyramid& p) {
   std::vector<kernels::TexelLevel> levels;
-  for (const auto& l : p.levels) levels.push_back({l.width, l.height, l.rgba.data()});
+  for (const auto& l : p.levels)
+    levels.push_back({l.width, l.height, l.rgba.empty() ? nullptr : l.rgba.data(), l.half_rgba.data()});
   return levels;
+}
+
+// The same numbers twice: in 16 bits, and what these stand for in 32.
+std::pair<MipPyramid, MipPyramid> in_half_and_rounded(const MipPyramid& p) {
+  MipPyramid half = p, rounded = p;
+  for (std::size_t l = 0; l < p.levels.size(); ++l) {
+    half.levels[l].rgba.clear();
+    for (float& n : rounded.levels[l].rgba) {
+      half.levels[l].half_rgba.push_back(kernels::to_half(n));
+      n = kernels::from_half(half.levels[l].half_rgba.back());
+    }
+  }
+  return {half, rounded};
 }
 
 struct Points {
@@ -91,11 +106,55 @@ TEST(TextureLookup, EveryTargetHasTheBitsOfTheScalarTwin) {
     for (const Wrap u : {Wrap::repeat, Wrap::clamp, Wrap::mirror, Wrap::border})
       for (const Wrap v : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
         const MipPyramid pyramid = random_pyramid(37, 16, u, v);
-        const auto levels = levels_of(pyramid);
-        expect_twins(kernels::TexelPyramid{levels, static_cast<kernels::EdgeRule>(u),
-                                           static_cast<kernels::EdgeRule>(v)},
-                     p, filter);
+        for (const MipPyramid& stored : {pyramid, in_half_and_rounded(pyramid).first}) {
+          const auto levels = levels_of(stored);
+          expect_twins(kernels::TexelPyramid{levels, static_cast<kernels::EdgeRule>(u),
+                                             static_cast<kernels::EdgeRule>(v)},
+                       p, filter);
+        }
       }
+  }
+}
+
+TEST(TextureLookup, NumbersOf16BitsAreReadAsTheNumbersTheyStandFor) {
+  const Points p = hostile_points();
+  const auto [half, rounded] = in_half_and_rounded(random_pyramid(37, 16, Wrap::repeat, Wrap::mirror));
+  const auto half_levels = levels_of(half), rounded_levels = levels_of(rounded);
+  const std::size_t n = p.u.size();
+  for (const auto filter : {kernels::Lookup::nearest, kernels::Lookup::bilinear, kernels::Lookup::trilinear,
+                            kernels::Lookup::catmull_rom, kernels::Lookup::b_spline, kernels::Lookup::ewa}) {
+    std::vector<float> of_half(n), of_rounded(n);
+    kernels::RgbaRows<float> to_half, to_rounded;
+    to_half.plane[2] = of_half.data(), to_rounded.plane[2] = of_rounded.data();
+    kernels::simd::look_up(kernels::TexelPyramid{half_levels}, filter, p.rows(), n, to_half);
+    kernels::simd::look_up(kernels::TexelPyramid{rounded_levels}, filter, p.rows(), n, to_rounded);
+    for (std::size_t i = 0; i < n; ++i)
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(of_half[i]), std::bit_cast<std::uint32_t>(of_rounded[i]))
+          << static_cast<int>(filter) << " u " << p.u[i] << " v " << p.v[i];
+  }
+}
+
+// Nothing is blended beyond the two ends, either end is exact, and equal ends keep their bits.
+TEST(TextureLookup, WhatIsBlendedLiesBetweenTheTexels) {
+  test::Random random(11);
+  const auto real = [&] {
+    return std::ldexp(static_cast<float>(random.uniform()) - 0.5F, static_cast<int>(random.below(40)) - 20);
+  };
+  for (int i = 0; i < 20000; ++i) {
+    const float a = real(), b = real();
+    const float f = i % 3 == 0 ? 1 - 0x1p-24F : i % 3 == 1 ? 0x1p-20F : static_cast<float>(random.uniform());
+    const auto at = [&](float share) {
+      return kernels::between(kernels::Rgba<float>{a, b, a, b}, kernels::Rgba<float>{b, a, a, b}, share);
+    };
+    const auto c = at(f);
+    EXPECT_LE(std::min(a, b), c[0]);
+    EXPECT_GE(std::max(a, b), c[0]);
+    EXPECT_NEAR(c[0], a + f * (static_cast<double>(b) - a),
+                std::abs(a - b) * 0x1p-23 + std::max(std::abs(a), std::abs(b)) * 0x1p-23);
+    EXPECT_EQ(c[2], a);
+    EXPECT_EQ(c[3], b);
+    EXPECT_EQ(at(0)[0], a);
+    EXPECT_EQ(at(1)[0], b);
   }
 }
 
