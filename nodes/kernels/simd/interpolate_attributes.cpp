@@ -24,8 +24,8 @@ HWY_INLINE void each_seen(std::uint32_t seen, Visit&& visit) {
   for (; seen != 0; seen &= seen - 1) visit(std::countr_zero(seen) * static_cast<int>(hn::Lanes(Float())));
 }
 
-// Where the numbers of an attribute go: its planes at the first pixel of a row, or of a stretch of it. Null: nobody
-// reads them. Found once a row, since finding them for every vector took longer than the numbers themselves.
+// Where the numbers of an attribute go: its planes at the first pixel of a row. Null: nobody reads them. Found once
+// for a row, not for every vector of its points.
 struct AttributeRow {
   float *value[4], *dx[4], *dy[4];
   bool slopes = false;
