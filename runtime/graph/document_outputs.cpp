@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <unordered_map>
-#include <utility>
 #include <vector>
 
 namespace frustum {
@@ -39,32 +37,6 @@ bool is_quality(std::string_view s) {
 
 bool leaves_folder(const std::filesystem::path& path) {
   return path.is_absolute() || (!path.empty() && *path.lexically_normal().begin() == "..");
-}
-
-struct Clash {
-  const DocumentOutput *file, *inside;
-};
-
-// Outputs whose file lies where another output's file would have to be a folder.
-std::vector<Clash> files_inside_files(const std::vector<DocumentOutput>& outputs) {
-  std::vector<std::pair<std::string, const DocumentOutput*>> sorted;
-  for (const DocumentOutput& o : outputs)
-    if (!o.file.empty()) sorted.emplace_back(std::filesystem::path(o.file).lexically_normal().string(), &o);
-  // With '/' before every other character, what lies in a folder follows its name at once.
-  const auto before = [](char a, char b) { return a != b && (a == '/' || (b != '/' && a < b)); };
-  std::stable_sort(sorted.begin(), sorted.end(), [&](const auto& a, const auto& b) {
-    return std::lexicographical_compare(a.first.begin(), a.first.end(), b.first.begin(), b.first.end(),
-                                        before);
-  });
-  std::vector<Clash> found;
-  for (std::size_t i = 1, outer = 0; i < sorted.size(); ++i) {
-    const std::string &file = sorted[outer].first, &inside = sorted[i].first;
-    if (inside.size() > file.size() && inside[file.size()] == '/' && inside.starts_with(file))
-      found.push_back({sorted[outer].second, sorted[i].second});
-    else if (inside != file)
-      outer = i;
-  }
-  return found;
 }
 
 }  // namespace
@@ -244,32 +216,6 @@ void DocumentReader::check_compression(DocumentOutput& output, const Json& j, co
            .expected = expected,
            .got = output.compression,
            .suggestions = nearest_names(output.compression, known)});
-}
-
-void DocumentReader::check_same_files() {
-  std::unordered_map<std::string, const DocumentOutput*> first;
-  for (const DocumentOutput& output : doc_->outputs) {
-    if (output.file.empty()) continue;
-    const auto [same, is_new] =
-        first.try_emplace(std::filesystem::path(output.file).lexically_normal().string(), &output);
-    if (is_new) continue;
-    problem({.code = "duplicate_file",
-             .pointer = child_pointer(output.pointer, "file"),
-             .message = fmt::format("'{}' and '{}' write the same file", same->second->name, output.name),
-             .expected = "a file for each output",
-             .got = output.file,
-             .related = {{.pointer = child_pointer(same->second->pointer, "file"),
-                          .message = fmt::format("'{}' writes it here", same->second->name)}}});
-  }
-  for (const auto& [file, inside] : files_inside_files(doc_->outputs))
-    problem({.code = "duplicate_file",
-             .pointer = child_pointer(inside->pointer, "file"),
-             .message =
-                 fmt::format("'{}' writes into a folder that is the file of '{}'", inside->name, file->name),
-             .expected = "a file for each output, and none in the place of a folder",
-             .got = inside->file,
-             .related = {{.pointer = child_pointer(file->pointer, "file"),
-                          .message = fmt::format("'{}' writes it here", file->name)}}});
 }
 
 }  // namespace frustum
