@@ -126,7 +126,7 @@ void check_names_of_frames(const Graph& graph, const Demand& demand, Diagnostics
     const GraphOutput& output = graph.outputs[i];
     if (output.file.find("{frame}") != std::string::npos) continue;
     problems.add({.code = "file_without_frame",
-                  .pointer = output.place.pointer + "/file",
+                  .pointer = output.place.pointer,
                   .message = fmt::format("--frames writes every frame of output '{}' to the same file '{}'",
                                          output.name, output.file),
                   .expected = "a file name with {frame}",

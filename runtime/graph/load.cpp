@@ -41,7 +41,7 @@ class Builder {
   }
 
  private:
-  // Of a node or an output: where its name stands.
+  // Of a node: where its name stands.
   static SourcePlace place_of(const SourceText& text, const std::string& pointer) {
     const TextPlace at = text.key_place(pointer);
     return {text.file(), pointer, at.line, at.column};
@@ -99,7 +99,7 @@ class Builder {
                     .bits = output.bits,
                     .compression = output.compression,
                     .layers = {},
-                    .place = place_of(*doc_.text, output.pointer)};
+                    .place = value_place(*doc_.text, output.pointer + "/file")};
     for (const DocumentLayer& layer : output.layers) {
       int budget = 1000000;
       for (const Edge& edge : follow(*flat_.top, layer.from, problems_, budget)) {

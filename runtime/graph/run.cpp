@@ -211,8 +211,8 @@ class Runner {
     if (s.kind == Step::Kind::node) return state_.graph.nodes[s.index].place;
     const PixelPass& pass = state_.plan.passes[s.index];
     for (const std::size_t o : pass.outputs)
-      if (state_.has_failed(o)) return state_.graph.outputs[o].place;
-    if (!pass.outputs.empty()) return state_.graph.outputs[pass.outputs.front()].place;
+      if (state_.has_failed(o) || state_.graph.outputs[o].whole) return state_.graph.outputs[o].place;
+    if (pass.nodes.empty()) return state_.graph.outputs[pass.outputs.front()].place;
     return state_.graph.nodes[pass.nodes.back()].place;
   }
 
@@ -387,8 +387,8 @@ Diagnostics overwriting_outputs(const Graph& graph, const RunOptions& options) {
     if (!own) own = own_files(graph);
     auto d = overwriting(*own, path, fmt::format("output '{}'", output.name));
     if (!d) continue;
-    d->pointer = child_pointer(output.place.pointer, "file");
-    d->file = output.place.file, d->line = output.place.line, d->column = output.place.column;
+    d->pointer = output.place.pointer, d->file = output.place.file;
+    d->line = output.place.line, d->column = output.place.column;
     problems.add(std::move(*d));
   }
   return problems;

@@ -1,5 +1,6 @@
 // How the program ends when something is in its way: a run that fails or is interrupted, output that is
 // lost, files that are none.
+#include "runtime/app/files.h"
 #include "tests/support/process.h"
 #include "tests/support/temp_file.h"
 
@@ -223,7 +224,7 @@ TEST(CliEnds, TheOutputThatCannotBeWrittenIsNamed) {
   EXPECT_EQ(r.code, 3);
   const auto d = json::parse(r.out)["diagnostics"][0];
   EXPECT_EQ(d["code"], "cannot_write_file");
-  EXPECT_EQ(d["pointer"], "/outputs/bad");
+  EXPECT_EQ(d["pointer"], "/outputs/bad/file");
   EXPECT_GT(d["line"], 0);
 }
 
@@ -343,6 +344,9 @@ TEST(CliEnds, FramesThatWouldWriteOverEachOtherAreRefused) {
   const auto same = frames("a.exr", R"("params": { "frame": 1 }, )", "1-3");
   EXPECT_EQ(same.code, 2);
   EXPECT_THAT(same.err, AllOf(HasSubstr("error[file_without_frame]"), HasSubstr("/outputs/o/file")));
+  const std::string text = read_text(folder.file("f.json"));
+  const std::size_t at = text.find("\"a.exr\""), line = text.rfind('\n', at);
+  EXPECT_THAT(same.err, HasSubstr("f.json:2:" + std::to_string(at - line) + " "));
   EXPECT_THAT(same.err, Not(HasSubstr("broken.exr"))) << "nothing ran";
   EXPECT_THAT(frames("a.exr", R"("params": { "frame": 1 }, )", "3").err,
               Not(HasSubstr("file_without_frame")));

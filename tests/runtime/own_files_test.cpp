@@ -72,6 +72,8 @@ TEST(OwnFiles, OutputsThatAreOneAreRefused) {
     EXPECT_EQ(d[0]["code"], "overwrites_graph");
     EXPECT_EQ(d[0]["pointer"], "/outputs/table/file");
     EXPECT_EQ(d[0]["line"], 4);
+    const std::string line = g.text.substr(g.text.rfind('\n') + 1);
+    EXPECT_EQ(d[0]["column"], line.find("\"" + file) + 1) << "where its file's name stands";
     g.expect_untouched();
     EXPECT_FALSE(fs::exists(g.folder.file("new"))) << "nothing ran";
     EXPECT_EQ(frustum({"run", "outer.json", "--out", ".", "--want", "first"}, g.folder.path()).code, 0);
