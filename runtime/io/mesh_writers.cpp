@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace frustum {
 
 void warn_left_out(const SaveRequest& request, std::string_view format, std::string_view what) {
@@ -23,7 +21,7 @@ void require_finite(const Column& position, std::string_view extension, const st
         "format_cannot_hold",
         fmt::format("{}: vertex {} is at ({}, {}, {}), and .{} holds finite positions alone; .csv "
                     "and .json hold all",
-                    path, i, x, y, z, extension));
+                    path, i, as_text(x), as_text(y), as_text(z), extension));
   }
 }
 

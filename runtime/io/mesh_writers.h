@@ -6,6 +6,9 @@
 #include "runtime/core/partial_file.h"
 #include "runtime/core/sink.h"
 
+#include <cmath>
+#include <concepts>
+#include <limits>
 #include <string_view>
 
 namespace frustum {
@@ -32,6 +35,12 @@ void write_mesh(const Mesh& mesh, std::string_view extension, const SaveRequest&
 void write_ply(const Mesh& mesh, const SaveRequest& request, PartialFile& to, Context& ctx);
 void write_obj(const Mesh& mesh, const SaveRequest& request, PartialFile& to, Context& ctx);
 void write_gltf(const Mesh& mesh, bool binary, const SaveRequest& request, PartialFile& to, Context& ctx);
+
+// A number as texts have it: a NaN has no sign.
+template <std::floating_point R>
+R as_text(R value) {
+  return std::isnan(value) ? std::numeric_limits<R>::quiet_NaN() : value;
+}
 
 // Calls request.warn, if there is one.
 void warn_left_out(const SaveRequest& request, std::string_view format, std::string_view what);

@@ -39,9 +39,9 @@ void add_numbers(Lines& lines, const Column& c, std::size_t row) {
   const std::size_t first = row * static_cast<std::size_t>(c.width());
   for (std::size_t k = 0; k < static_cast<std::size_t>(c.width()); ++k) {
     if (c.kind() == NumberKind::f32)
-      lines.add(" {}", static_cast<const float*>(c.data())[first + k]);
+      lines.add(" {}", as_text(static_cast<const float*>(c.data())[first + k]));
     else
-      lines.add(" {}", static_cast<const double*>(c.data())[first + k]);
+      lines.add(" {}", as_text(static_cast<const double*>(c.data())[first + k]));
   }
 }
 
@@ -78,7 +78,8 @@ void add_positions(Lines& lines, const Mesh& mesh, const Column* color) {
     lines.add("v");
     add_numbers(lines, position, i);
     for (int k = 0; color != nullptr && k < 3; ++k)
-      lines.add(" {}", static_cast<float>(kernels::encode(kernels::Curve::srgb, color->number(i, k))));
+      lines.add(" {}",
+                as_text(static_cast<float>(kernels::encode(kernels::Curve::srgb, color->number(i, k)))));
     lines.add("\n");
   }
 }
