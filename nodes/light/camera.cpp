@@ -37,10 +37,6 @@ struct Outputs {
   Ref<Camera> camera;
 };
 
-void check(const Params& p) { check_subpixel_bits(p.conventions, p.subpixel_bits); }
-
-std::string states(const Params& p) { return stated(p.conventions, false, p.subpixel_bits); }
-
 const Light& only_source(const LightSet& set) {
   const Light* found = nullptr;
   for (const Light& l : set.lights) {
@@ -87,15 +83,15 @@ Outputs run(const Inputs& in, const Params& p, Context&) {
   if (v.height > 0) c.height = v.height;
   if (v.fov_y > 0) c.fov_y = v.fov_y;
   c.resolution = glm::ivec2(p.size);
-  c.conventions = p.conventions, c.subpixel_bits = p.subpixel_bits;
+  apply_camera_choices(p, c);
   return {std::make_shared<Camera>(c)};
 }
 
 }  // namespace
 
 NodeType nodes::light_camera() {
-  return node("light.camera", run)
-      .doc("Puts a camera where a light is, such that its picture holds what may cast a shadow.")
+  auto camera = node("light.camera", run);
+  camera.doc("Puts a camera where a light is, such that its picture holds what may cast a shadow.")
       .cite("Williams 1978, Casting curved shadows on curved surfaces, doi:10.1145/965139.807402")
       .covers(61)
       .input("light", &Inputs::light, "One directional, spot or point light.")
@@ -106,13 +102,10 @@ NodeType nodes::light_camera() {
       .knob({"256", "512", "1024", "2048", "4096"},
             "Edges of shadows are off by up to a texel: wholly, at a share of the points like 1/size.", -0.5)
       .param("side", &Params::side,
-             "Which side of the cube around a point light; other lights have one view.")
-      .param("conventions", &Params::conventions, conventions_doc)
-      .knob_of_taste({"gl", "vulkan", "d3d"}, conventions_basis)
-      .param("subpixel_bits", &Params::subpixel_bits, subpixel_bits_doc, {.range = between(4, 8)})
-      .knob({"4", "5", "6", "7", "8"}, subpixel_bits_basis)
-      .check(check)
-      .states(states)
+             "Which side of the cube around a point light; other lights have one view.");
+  return camera_choices(camera)
+      .check(check_camera_choices<Params>)
+      .states(stated_camera_choices<Params>)
       .output("camera", &Outputs::camera,
               "For project.orthographic where the light is directional, else for project.perspective.");
 }

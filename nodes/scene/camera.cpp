@@ -30,10 +30,8 @@ double far_of(const Params& p) { return p.far.value_or(std::numeric_limits<doubl
 void check(const Params& p) {
   const auto fault = scene::fault_of_camera(p.eye, p.target, p.up, p.near, far_of(p));
   if (!fault.empty()) throw NodeError("impossible_camera", std::string(fault.what), at_param(fault.param));
-  check_subpixel_bits(p.conventions, p.subpixel_bits);
+  check_camera_choices(p);
 }
-
-std::string states(const Params& p) { return stated(p.conventions, p.reversed_z, p.subpixel_bits); }
 
 Outputs run(const Inputs&, const Params& p, Context&) {
   auto c = std::make_shared<Camera>();
@@ -41,8 +39,7 @@ Outputs run(const Inputs&, const Params& p, Context&) {
   c->fov_y = p.fov_y * std::numbers::pi / 180;
   c->near_z = p.near, c->far_z = far_of(p);
   c->height = p.height;
-  c->reversed_z = p.reversed_z;
-  c->conventions = p.conventions, c->subpixel_bits = p.subpixel_bits;
+  apply_camera_choices(p, *c);
   c->resolution = p.resolution;
   return {std::move(c)};
 }
@@ -50,8 +47,8 @@ Outputs run(const Inputs&, const Params& p, Context&) {
 }  // namespace
 
 NodeType nodes::scene_camera() {
-  return node("scene.camera", run)
-      .doc("Where the picture is taken from: place, direction, view volume and size in pixels.")
+  auto camera = node("scene.camera", run);
+  camera.doc("Where the picture is taken from: place, direction, view volume and size in pixels.")
       .cite(
           "OpenGL 4.6 core profile, 13.6 to 13.8; Vulkan 1.3, Primitive Clipping and Controlling the "
           "Viewport")
@@ -70,18 +67,13 @@ NodeType nodes::scene_camera() {
       .param("far", &Params::far, "Distance of the far plane; null puts it at infinity.",
              {.unit = "world units", .range = above(0)})
       .param("height", &Params::height, "Height of the view volume of an orthographic projection.",
-             {.unit = "world units", .range = above(0)})
-      .param("reversed_z", &Params::reversed_z, reversed_z_doc)
-      .knob_of_taste({"false", "true"}, reversed_z_basis)
-      .param("conventions", &Params::conventions, conventions_doc)
-      .knob_of_taste({"gl", "vulkan", "d3d"}, conventions_basis)
-      .param("subpixel_bits", &Params::subpixel_bits, subpixel_bits_doc, {.range = between(4, 8)})
-      .knob({"4", "5", "6", "7", "8"}, subpixel_bits_basis)
+             {.unit = "world units", .range = above(0)});
+  return camera_choices(camera)
       .param("resolution", &Params::resolution,
              "Width and height of the picture; their ratio is that of the view.",
              {.unit = "px", .range = between(1, 65536)})
       .check(check)
-      .states(states)
+      .states(stated_camera_choices<Params>)
       .output("camera", &Outputs::camera, "The camera, for the nodes that project, tessellate and shade.");
 }
 

@@ -26,10 +26,6 @@ struct Outputs {
   Ref<Camera> camera;
 };
 
-void check(const Params& p) { check_subpixel_bits(p.conventions, p.subpixel_bits); }
-
-std::string states(const Params& p) { return stated(p.conventions, p.reversed_z, p.subpixel_bits); }
-
 kernels::Box bounds_of(const Mesh& mesh, const Context& ctx) {
   const kernels::Box box = ctx.real([&]<class R>() {
     const auto position = mesh.real<R>("position");
@@ -54,16 +50,15 @@ Outputs run(const Inputs& in, const Params& p, Context& ctx) {
   c->eye = c->target + scene::orbit_direction(p.frame, p.frames, p.start, p.elevation) * distance;
   const auto [near_z, far_z] = scene::orbit_depths(distance, radius);
   c->near_z = near_z, c->far_z = far_z;
-  c->reversed_z = p.reversed_z;
-  c->conventions = p.conventions, c->subpixel_bits = p.subpixel_bits;
+  apply_camera_choices(p, *c);
   return {std::move(c)};
 }
 
 }  // namespace
 
 NodeType nodes::scene_orbit() {
-  return node("scene.orbit", run)
-      .doc("A camera that circles a mesh and always has all of it in the picture.")
+  auto camera = node("scene.orbit", run);
+  camera.doc("A camera that circles a mesh and always has all of it in the picture.")
       .input("mesh", &Inputs::mesh, "What it looks at: the ball around the box of its faces.",
              {.space = {Space::object, Space::world}})
       .param("frame", &Params::frame, "Which picture of the turn; raising it goes on counter-clockwise.")
@@ -77,17 +72,12 @@ NodeType nodes::scene_orbit() {
              {.range = between(1, 100)})
       .param("fov_y", &Params::fov_y,
              "Angle between top and bottom; raising it moves the camera nearer: a stronger perspective.",
-             {.unit = "degrees", .range = {.low = 0, .high = 180, .open_low = true, .open_high = true}})
-      .param("reversed_z", &Params::reversed_z, reversed_z_doc)
-      .knob_of_taste({"false", "true"}, reversed_z_basis)
-      .param("conventions", &Params::conventions, conventions_doc)
-      .knob_of_taste({"gl", "vulkan", "d3d"}, conventions_basis)
-      .param("subpixel_bits", &Params::subpixel_bits, subpixel_bits_doc, {.range = between(4, 8)})
-      .knob({"4", "5", "6", "7", "8"}, subpixel_bits_basis)
+             {.unit = "degrees", .range = {.low = 0, .high = 180, .open_low = true, .open_high = true}});
+  return camera_choices(camera)
       .param("resolution", &Params::resolution, "Width and height of the picture.",
              {.unit = "px", .range = between(1, 65536)})
-      .check(check)
-      .states(states)
+      .check(check_camera_choices<Params>)
+      .states(stated_camera_choices<Params>)
       .output("camera", &Outputs::camera, "The camera; near and far are just before and behind the mesh.");
 }
 
