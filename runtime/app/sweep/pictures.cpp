@@ -1,11 +1,11 @@
 #include "runtime/app/sweep/pictures.h"
 
-#include "nodes/kernels/transfer.h"
 #include "runtime/app/export.h"
 #include "runtime/app/files.h"
 #include "runtime/app/metrics/metrics.h"
 #include "runtime/app/metrics/picture.h"
 #include "runtime/app/png.h"
+#include "runtime/app/sweep/srgb_codes.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -122,6 +122,7 @@ Encoded colors(const Raster& raster) {
   const Rect& window = raster.frame().window;
   const Reduction r = reduction_of(window);
   const LightRows light(raster);
+  static const SrgbCodes code_of;
   Encoded out;
   out.fill(Grid(r.width, r.height));
   tbb::parallel_for(0, r.height, [&](int y) {
@@ -137,8 +138,7 @@ Encoded colors(const Raster& raster) {
     }
     for (int x = 0; x < r.width; ++x) {
       const double back = behind[static_cast<std::size_t>(x)] * checkerboard(r, x, y);
-      for (Grid& g : out)
-        g.at(x, y) = kernels::encode(kernels::Curve::srgb, (g.at(x, y) + back) / area(window, r, x, y));
+      for (Grid& g : out) g.at(x, y) = code_of((g.at(x, y) + back) / area(window, r, x, y)) / 255.0;
     }
   });
   return out;
@@ -182,13 +182,15 @@ Encoded error_colors(const Raster& raster, const Raster& reference) {
   const auto largest = std::max_element(map.begin(), map.end());
   const double scale = largest == map.end() || *largest == 0 ? 1 : static_cast<double>(*largest);
   Grid worst(r.width, r.height);
-  for (int y = 0; y < window.height(); ++y)
-    for (int x = 0; x < window.width(); ++x) {
-      double& e = worst.at(x / r.factor, y / r.factor);
-      e = std::max(
-          e, static_cast<double>(map[static_cast<std::size_t>(y) * static_cast<std::size_t>(window.width()) +
-                                     static_cast<std::size_t>(x)]));
+  tbb::parallel_for(0, r.height, [&](int y) {
+    for (int v = y * r.factor; v < std::min(window.height(), (y + 1) * r.factor); ++v) {
+      const float* row = map.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(window.width());
+      for (int x = 0; x < window.width(); ++x) {
+        double& e = worst.at(x / r.factor, y);
+        e = std::max(e, static_cast<double>(row[x]));
+      }
     }
+  });
   Encoded out;
   out.fill(Grid(r.width, r.height));
   for (std::size_t i = 0; i < worst.values.size(); ++i) {
