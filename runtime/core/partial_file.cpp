@@ -24,7 +24,8 @@ std::string temporary_name(const std::filesystem::path& path) {
       .string();
 }
 
-// Another run that fails may remove the folder while it is still empty; it is made again then.
+// Another run that fails may remove the folder while it is still empty; it is made again then. Where it cannot be made,
+// errno says why.
 int open_with_folder(const std::filesystem::path& path, const std::string& temporary) {
   int fd = -1;
   for (int attempt = 0; attempt < 5; ++attempt) {
@@ -33,6 +34,7 @@ int open_with_folder(const std::filesystem::path& path, const std::string& tempo
       std::filesystem::create_directories(folder, error);
     fd = open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd >= 0 || errno != ENOENT) break;
+    if (error) errno = error.value();
   }
   return fd;
 }

@@ -84,12 +84,14 @@ std::string_view name_of(DiskCache::Store s) {
 
 DiskCache::DiskCache(fs::path folder, std::uint64_t limit_bytes)
     : folder_(std::move(folder)), limit_(limit_bytes) {
-  std::error_code error;
-  fs::create_directories(folder_, error);
+  std::error_code error, unmade;
+  fs::create_directories(folder_, unmade);
   if (!fs::is_directory(folder_, error) || ::access(folder_.c_str(), R_OK | X_OK) != 0)
     throw WorldError("cache_unusable",
                      fmt::format("{} cannot be used as a folder for the cache: {}", folder_.string(),
-                                 error ? error.message() : "it is no folder, or may not be read"));
+                                 error && unmade ? unmade.message()
+                                 : error         ? error.message()
+                                                 : "it is no folder, or may not be read"));
   fs::create_directories(folder_ / "tmp", error);
   if (!error) fs::create_directories(folder_ / "objects", error);
   if (!error) fs::create_directories(folder_ / "graphs", error);

@@ -1,7 +1,9 @@
 #include "runtime/core/temporary_files.h"
 
+#include "runtime/core/error.h"
 #include "runtime/core/partial_file.h"
 #include "runtime/graph/cache_file.h"
+#include "runtime/graph/disk_cache.h"
 #include "tests/support/temp_file.h"
 
 #include <gtest/gtest.h>
@@ -67,6 +69,25 @@ TEST(PartialFiles, LeaveNoEmptyFolderOfTheirOwn) {
   }
   EXPECT_FALSE(exists(folder.file("new/deep")));
   EXPECT_TRUE(exists(folder.file("new/b")));
+}
+
+// Nobody makes folders there, not even root.
+TEST(PartialFiles, SayWhyTheirFolderCannotBeMade) {
+  if (!exists("/sys/kernel")) GTEST_SKIP() << "no /sys";
+  try {
+    const PartialFile file("/sys/kernel/frustum_test/deep/file.txt");
+    FAIL();
+  } catch (const WorldError& e) {
+    EXPECT_EQ(e.code, "cannot_write_file");
+    EXPECT_EQ(std::string(e.what()).find("No such file"), std::string::npos) << e.what();
+  }
+  try {
+    const DiskCache cache("/sys/kernel/frustum_test/deep", 1 << 20);
+    FAIL();
+  } catch (const WorldError& e) {
+    EXPECT_EQ(e.code, "cache_unusable");
+    EXPECT_EQ(std::string(e.what()).find("No such file"), std::string::npos) << e.what();
+  }
 }
 
 TEST(TemporaryFiles, OfTheCacheAreThoseThatAreNotFinished) {
