@@ -136,9 +136,9 @@ void fill(const Filler<R>& f, const Tile& out, Arena& arena) {
   const auto pixels = static_cast<std::size_t>(r.area()) * static_cast<std::size_t>(f.rasterizer->samples());
   const kernels::FragmentLayers<R> layers{plane_or_scratch<std::uint32_t>(out, 0, arena),
                                           plane_or_scratch<R>(out, 1, arena), f.layers};
-  const kernels::FragmentScratch<R> scratch{
-      arena.take<std::uint32_t>(pixels).data(), f.hides.empty() ? nullptr : arena.take<R>(pixels).data(),
-      arena.take<R>(2 * width).data(), arena.take<std::uint32_t>(width).data()};
+  const kernels::FragmentScratch<R> scratch{arena.take<std::uint32_t>(pixels).data(),
+                                            f.hides.empty() ? nullptr : arena.take<R>(pixels).data(),
+                                            arena.take<R>(width).data()};
   f.rasterizer->fill({r.x0, r.y0, r.x1, r.y1}, layers, scratch);
 }
 

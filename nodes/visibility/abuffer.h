@@ -1,7 +1,7 @@
 // The A-buffer: per sample the list of all faces there, from the nearest to the farthest, as layers of visibility.
 #pragma once
 
-#include "nodes/kernels/fragment_layers.h"
+#include "nodes/kernels/fragment_counts.h"
 #include "nodes/kernels/parallel.h"
 #include "nodes/kernels/simd/fragment_layers.h"
 

@@ -23,78 +23,95 @@ HWY_INLINE void each_vector(int n, F&& f) {
   for (; i < n; ++i) f(hn::CappedTag<float, 1>(), i);
 }
 
+// first, first + 1 ... A constant and a sum: Iota of a number that is not known yet is built in memory, lane by lane.
+template <class Di>
+HWY_INLINE hn::Vec<Di> numbers_from(Di di, int first) {
+  return hn::Add(hn::Iota(di, 0), hn::Set(di, first));
+}
+
+template <class D>
+HWY_INLINE hn::Vec<D> depths_from(D d, const RowDepths<float>& row, int x) {
+  const hn::RebindToSigned<D> di;
+  const auto across = hn::Add(hn::ConvertTo(d, numbers_from(di, row.first + x)), hn::Set(d, row.part));
+  auto z = hn::Add(hn::Set(d, row.start), hn::Mul(hn::Set(d, row.dx), across));
+  const auto least = hn::Set(d, row.least), greatest = hn::Set(d, row.greatest);
+  z = hn::IfThenElse(hn::Lt(z, least), least, z);
+  return hn::IfThenElse(hn::Gt(z, greatest), greatest, z);
+}
+template <class D>
+HWY_INLINE hn::Vec<D> depths_from(D d, const float* row, int x) {
+  return hn::LoadU(d, row + x);
+}
+
+// FragmentRows::insert at the pixels from x on, of which those in [span.x0, span.x1) count.
+template <class D, class Depths>
+HWY_INLINE void insert_vector(D d, const FragmentRow<float>& row, int x, PixelSpan span, const Depths& depths,
+                              std::uint32_t face, bool hides) {
+  const hn::RebindToUnsigned<D> du;
+  const hn::RebindToSigned<D> di;
+  const auto lane = numbers_from(di, x);
+  const auto within = hn::And(hn::Gt(lane, hn::Set(di, span.x0 - 1)), hn::Lt(lane, hn::Set(di, span.x1)));
+  const auto mine = depths_from(d, depths, x);
+  const int last = row.layers - 1;
+  float* z = row.z + x;
+  std::uint32_t* id = row.id + x;
+  auto on = hn::And(hn::RebindMask(d, within), hn::Lt(mine, hn::LoadU(d, z + last * row.z_stride)));
+  if (row.cut != nullptr) on = hn::And(on, hn::Lt(mine, hn::LoadU(d, row.cut + x)));
+  if (hn::AllFalse(d, on)) return;
+  const auto on_u = hn::RebindMask(du, on);
+  const auto before = hn::LoadU(du, row.count + x);
+  const auto after = hn::IfThenElse(on_u, hn::Add(before, hn::Set(du, 1u)), before);
+  hn::StoreU(hn::Min(after, hn::Set(du, static_cast<std::uint32_t>(row.layers))), du, row.count + x);
+  if (hides) hn::StoreU(hn::IfThenElse(on, mine, hn::LoadU(d, row.cut + x)), d, row.cut + x);
+  const std::uint32_t most = hn::GetLane(hn::MaxOfLanes(du, hn::IfThenElseZero(on_u, before)));
+  int layer = std::min(static_cast<int>(most), last);
+  z += layer * row.z_stride, id += layer * row.id_stride;
+  const auto place = hn::Set(du, face);
+  auto z_here = hn::LoadU(d, z);
+  auto id_here = hn::LoadU(du, id);
+  for (; layer > 0; --layer) {
+    const auto z_front = hn::LoadU(d, z - row.z_stride);
+    const auto id_front = hn::LoadU(du, id - row.id_stride);
+    const auto further = hn::And(on, hn::Lt(mine, z_front));
+    const auto further_u = hn::RebindMask(du, further);
+    z_here = hn::IfThenElse(further, z_front, hn::IfThenElse(on, mine, z_here));
+    id_here = hn::IfThenElse(further_u, id_front, hn::IfThenElse(hn::RebindMask(du, on), place, id_here));
+    hn::StoreU(z_here, d, z);
+    hn::StoreU(id_here, du, id);
+    if (hn::AllFalse(d, further)) return;
+    on = further, z_here = z_front, id_here = id_front;
+    z -= row.z_stride, id -= row.id_stride;
+  }
+  hn::StoreU(hn::IfThenElse(on, mine, z_here), d, z);
+  hn::StoreU(hn::IfThenElse(hn::RebindMask(du, on), place, id_here), du, id);
+}
+
 // FragmentRows by vectors; the templates call these by name, so they are static members as there.
 struct Rows {
-  template <class R>
-  static void depths(const DepthPlane<R>& plane, int x, int y, int ox, int oy, int n, R* HWY_RESTRICT out) {
-    using P = DepthPlane<R>;
-    const float down = P::whole_px(y, plane.anchor.y) + P::fraction_px(oy, plane.anchor.y);
-    const float start = plane.z + plane.dy * down, part = P::fraction_px(ox, plane.anchor.x);
-    const int first = x - (plane.anchor.x >> corner_bits);
-    each_vector(n, [&](auto d, int i) {
-      const hn::RebindToSigned<decltype(d)> di;
-      const auto across = hn::Add(hn::ConvertTo(d, hn::Iota(di, first + i)), hn::Set(d, part));
-      auto z = hn::Add(hn::Set(d, start), hn::Mul(hn::Set(d, plane.dx), across));
-      const auto least = hn::Set(d, plane.least), greatest = hn::Set(d, plane.greatest);
-      z = hn::IfThenElse(hn::Lt(z, least), least, z);
-      z = hn::IfThenElse(hn::Gt(z, greatest), greatest, z);
-      hn::StoreU(z, d, out + i);
-    });
+  static void depths(const RowDepths<float>& depth, PixelSpan span, float* HWY_RESTRICT out) {
+    each_vector(span.x1 - span.x0,
+                [&](auto d, int i) { hn::StoreU(depths_from(d, depth, span.x0 + i), d, out + i); });
   }
 
-  template <class R>
-  static std::uint32_t begin(const R* HWY_RESTRICT depth, const R* HWY_RESTRICT limit, std::uint32_t most,
-                             int n, std::uint32_t* HWY_RESTRICT moving, std::uint32_t* HWY_RESTRICT count) {
-    std::uint32_t top = 0;
-    each_vector(n, [&](auto d, int i) {
-      const hn::RebindToUnsigned<decltype(d)> du;
-      const auto nearer = hn::Lt(hn::LoadU(d, depth + i), hn::LoadU(d, limit + i));
-      const auto one = hn::IfThenElseZero(hn::RebindMask(du, nearer), hn::Set(du, 1u));
-      const auto before = hn::LoadU(du, count + i);
-      top = std::max(top, hn::GetLane(hn::MaxOfLanes(du, before)));
-      hn::StoreU(one, du, moving + i);
-      hn::StoreU(hn::Min(hn::Add(before, one), hn::Set(du, most)), du, count + i);
-    });
-    return top;
+  // Vectors stand at multiples of their length in the row, the last one shifted back to end with it: what lies beside
+  // the span in the row keeps its bytes, and nothing outside the row is touched, which other threads may write.
+  template <class Depths>
+  static void insert(const FragmentRow<float>& row, PixelSpan span, const Depths& depths, std::uint32_t face,
+                     bool hides) {
+    const Full d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    if (row.width < lanes) {
+      for (int x = span.x0; x < span.x1; ++x)
+        insert_vector(hn::CappedTag<float, 1>(), row, x, span, depths, face, hides);
+      return;
+    }
+    for (int x = span.x0 / lanes * lanes; x < span.x1; x += lanes)
+      insert_vector(d, row, std::min(x, row.width - lanes), {std::max(x, span.x0), span.x1}, depths, face,
+                    hides);
   }
 
-  template <class R>
-  static bool step(const R* HWY_RESTRICT depth, std::uint32_t face, int n, std::uint32_t* HWY_RESTRICT moving,
-                   const std::uint32_t* HWY_RESTRICT id_front, const R* HWY_RESTRICT z_front,
-                   std::uint32_t* HWY_RESTRICT id, R* HWY_RESTRICT z) {
-    bool any = false;
-    each_vector(n, [&](auto d, int i) {
-      const hn::RebindToUnsigned<decltype(d)> du;
-      const auto on = hn::Ne(hn::LoadU(du, moving + i), hn::Zero(du));
-      const auto mine = hn::LoadU(d, depth + i), front = hn::LoadU(d, z_front + i);
-      const auto further = hn::And(on, hn::RebindMask(du, hn::Lt(mine, front)));
-      const auto on_f = hn::RebindMask(d, on), further_f = hn::RebindMask(d, further);
-      hn::StoreU(hn::IfThenElse(further_f, front, hn::IfThenElse(on_f, mine, hn::LoadU(d, z + i))), d, z + i);
-      hn::StoreU(hn::IfThenElse(further, hn::LoadU(du, id_front + i),
-                                hn::IfThenElse(on, hn::Set(du, face), hn::LoadU(du, id + i))),
-                 du, id + i);
-      hn::StoreU(hn::IfThenElseZero(further, hn::Set(du, 1u)), du, moving + i);
-      any = any || !hn::AllFalse(du, further);
-    });
-    return any;
-  }
-
-  template <class R>
-  static void place(const R* HWY_RESTRICT depth, std::uint32_t face, int n,
-                    const std::uint32_t* HWY_RESTRICT moving, std::uint32_t* HWY_RESTRICT id,
-                    R* HWY_RESTRICT z) {
-    each_vector(n, [&](auto d, int i) {
-      const hn::RebindToUnsigned<decltype(d)> du;
-      const auto on = hn::Ne(hn::LoadU(du, moving + i), hn::Zero(du));
-      hn::StoreU(hn::IfThenElse(hn::RebindMask(d, on), hn::LoadU(d, depth + i), hn::LoadU(d, z + i)), d,
-                 z + i);
-      hn::StoreU(hn::IfThenElse(on, hn::Set(du, face), hn::LoadU(du, id + i)), du, id + i);
-    });
-  }
-
-  template <class R>
-  static void finish(const R* HWY_RESTRICT cut, float sign, float far, int n, std::uint32_t* HWY_RESTRICT id,
-                     R* HWY_RESTRICT z) {
+  static void finish(const float* HWY_RESTRICT cut, float sign, float far, int n,
+                     std::uint32_t* HWY_RESTRICT id, float* HWY_RESTRICT z) {
     each_vector(n, [&](auto d, int i) {
       const hn::RebindToUnsigned<decltype(d)> du;
       const auto depth = hn::LoadU(d, z + i);

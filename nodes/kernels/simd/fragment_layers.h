@@ -2,7 +2,7 @@
 // bytes on every SIMD target.
 #pragma once
 
-#include "nodes/kernels/fragment_layers.h"
+#include "nodes/kernels/fragment_counts.h"
 
 namespace frustum::kernels::simd {
 

@@ -1,5 +1,6 @@
 #include "nodes/kernels/fragment_layers.h"
 
+#include "nodes/kernels/fragment_counts.h"
 #include "nodes/kernels/simd/fragment_layers.h"
 #include "tests/nodes/kernels/screen_scene.h"
 #include "tests/support/simd_targets.h"
@@ -81,12 +82,12 @@ Filled<R> fill_layers(const ScreenScene<R>& scene, const Pattern& pattern, int l
   const kernels::FragmentScene<R> from{{scene.view(), pattern.view(), &bins, order}, hides};
   Filled<R> out(window, pattern.samples * layers);
   const auto pixels = static_cast<std::size_t>(out.width() * out.height() * pattern.samples);
-  std::vector<std::uint32_t> count(pixels), moving(pixels);
-  std::vector<R> cut(pixels), depth(2 * pixels);
+  std::vector<std::uint32_t> count(pixels);
+  std::vector<R> cut(pixels), depth(pixels);
   for (const PixelRect& rect : rects) {
     const kernels::FragmentLayers<R> to{out.plane(out.id, rect), out.plane(out.z, rect), layers};
     const kernels::FragmentScratch<R> scratch{count.data(), hides.empty() ? nullptr : cut.data(),
-                                              depth.data(), moving.data()};
+                                              depth.data()};
     if constexpr (std::is_same_v<R, float>)
       if (twin == Twin::vector) {
         kernels::simd::fill_fragments(from, rect, to, scratch);
@@ -167,7 +168,7 @@ void expect_same_in_any_tiles(Twin twin) {
     for (const auto& hides : kinds_of_hiding(random, scene.face.size())) {
       const auto whole =
           fill_layers<R>(scene, pattern, 7, Twin::scalar, DepthOrder::standard, hides, {window});
-      for (const int edge : {1, 5, 16, 64})
+      for (const int edge : {1, 5, 16, 41, 64})
         EXPECT_TRUE(fill_layers<R>(scene, pattern, 7, twin, DepthOrder::standard, hides,
                                    test::tiles(window, edge, edge))
                         .same_bytes(whole))
@@ -203,9 +204,14 @@ TEST(FragmentLayers, SpansOfARowAreExact) {
     const kernels::Edge e(point(), point());
     const int y = static_cast<int>(random.below(100)), x0 = static_cast<int>(random.below(100));
     const int ox = static_cast<int>(random.below(4096)), oy = static_cast<int>(random.below(4096));
-    const kernels::PixelSpan span = kernels::cut_span({x0, x0 + 60}, e, y, ox, oy);
-    for (int x = x0; x < x0 + 60; ++x)
-      ASSERT_EQ(x >= span.x0 && x < span.x1, kernels::Edge::covers(e.at_pixel(x, y), e.at_offset(ox, oy)));
+    const kernels::PixelRect box{x0, y, x0 + 60, y + 3};
+    kernels::RowSpans spans({e, e, e}, ox, oy, box);
+    for (int row = y; row < y + 3; ++row) {
+      const kernels::PixelSpan span = spans.next();
+      for (int x = x0; x < x0 + 60; ++x)
+        ASSERT_EQ(x >= span.x0 && x < span.x1,
+                  kernels::Edge::covers(e.at_pixel(x, row), e.at_offset(ox, oy)));
+    }
   }
 }
 
