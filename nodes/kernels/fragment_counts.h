@@ -26,7 +26,7 @@ class FragmentCounter {
         corner_(scene.fill.bins->window.x0 + column * size, scene.fill.bins->window.y0 + row * size),
         part_(intersection(scene.fill.bins->window,
                            {corner_.x, corner_.y, corner_.x + size, corner_.y + size})),
-        count_(chunk * size * stride),
+        count_(static_cast<std::size_t>(std::min(chunk, pattern_.samples)) * size * stride),
         depth_(size) {
     if (!scene.hides.empty()) rank_.resize(count_.size()), cut_.resize(count_.size());
   }
