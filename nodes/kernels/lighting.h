@@ -240,11 +240,12 @@ struct ColorRows {
 /// albedo (ambient + diffuse d) + specular s + emission with alpha 1 at the selected points; elsewhere transparent
 /// black, or what was there if `keep`. Where no colour is -0 or NaN, leaving out terms that are 0 keeps every bit:
 /// emission, which is always added, turns a -0 that a negative albedo makes into 0 either way.
-///   albedo  three rows, or null for 1
+///   albedo   three rows, or null for 1
+///   opacity  a row that scales colour and alpha at last, or null for 1
 template <std::floating_point R>
 void reflect_light(const SurfaceColors<R>& c, const LightInput<R>& light,
-                   const std::array<const R*, 3>& albedo, Selection which, bool keep, std::size_t n,
-                   const ColorRows<R>& out) {
+                   const std::array<const R*, 3>& albedo, const R* opacity, Selection which, bool keep,
+                   std::size_t n, const ColorRows<R>& out) {
   for (std::size_t x = 0; x < n; ++x) {
     const bool selected = which.has(x);
     if (!selected && keep) continue;
@@ -257,11 +258,18 @@ void reflect_light(const SurfaceColors<R>& c, const LightInput<R>& light,
         if (albedo[k] != nullptr) color = albedo[k][x] * color;
         if (light.specular[k] != nullptr) color = color + c.specular[k] * light.specular[k][x];
         color = color + c.emission[k];
+        if (opacity != nullptr) color = color * opacity[x];
       }
       out.plane[k][x] = color;
     }
-    if (out.plane[3] != nullptr) out.plane[3][x] = selected ? R(1) : R(0);
+    if (out.plane[3] != nullptr) out.plane[3][x] = !selected ? R(0) : opacity != nullptr ? opacity[x] : R(1);
   }
+}
+
+/// The number in `table` of the face that each point of a row shows; 1 where the table has none.
+template <std::floating_point R>
+void numbers_of_faces(std::span<const R> table, const std::uint32_t* id, std::size_t n, R* out) {
+  for (std::size_t x = 0; x < n; ++x) out[x] = id[x] < table.size() ? table[id[x]] : R(1);
 }
 
 // ----- once per face and pixel: the samples of a pixel in groups that see the same face

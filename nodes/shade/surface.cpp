@@ -262,6 +262,7 @@ class Filler {
       if (highlights) scratch_.light.specular[k] = row();
     }
     scratch_.side = row();
+    scratch_.opacity = row();
     scratch_.tag = arena.take<std::uint32_t>(n_).data();
     scratch_.present = &present_;
     const bool phong = s.interpolation == Interpolation::phong;
@@ -393,7 +394,6 @@ class Filler {
         const bool clear = any_clear(points.id, alpha, n);
         if (clear && !s_.straight_albedo) straighten_row(alpha, n, straight_, points.albedo);
         shade_row(shader_.scene, points, n, scratch_, out);
-        fade_row(shader_.scene, points.id, n, out);
         if (clear) cover_row(points.id, alpha, n, out);
       }
     }
@@ -411,7 +411,6 @@ class Filler {
       if (!s_.straight_albedo && any_clear(means.id, alpha, n_))
         straighten_row(alpha, n_, straight_, means.albedo);
       shade_row(shader_.scene, means, n_, scratch_, color_);
-      fade_row(shader_.scene, face_.data(), n_, color_);
       for (std::size_t k = 0; k < samples_; ++k)
         put_face_row(id_[k], face_.data(), n_, color_, out_rows(k, y));
     }

@@ -61,12 +61,21 @@ void receive_row(const kernels::LightSetup<R>& setup, const kernels::PointRows<R
 
 template <std::floating_point R>
 void reflect_row(const kernels::SurfaceColors<R>& colors, const kernels::LightInput<R>& light,
-                 const std::array<const R*, 3>& albedo, kernels::Selection which, bool keep, std::size_t n,
-                 const kernels::ColorRows<R>& out) {
+                 const std::array<const R*, 3>& albedo, const R* opacity, kernels::Selection which, bool keep,
+                 std::size_t n, const kernels::ColorRows<R>& out) {
   if constexpr (sizeof(R) == 4)
-    kernels::simd::reflect_light(colors, light, albedo, which, keep, n, out);
+    kernels::simd::reflect_light(colors, light, albedo, opacity, which, keep, n, out);
   else
-    kernels::reflect_light(colors, light, albedo, which, keep, n, out);
+    kernels::reflect_light(colors, light, albedo, opacity, which, keep, n, out);
+}
+
+/// A number of each point's face: see kernels::numbers_of_faces.
+template <std::floating_point R>
+void face_number_row(std::span<const R> table, const std::uint32_t* id, std::size_t n, R* out) {
+  if constexpr (sizeof(R) == 4)
+    kernels::simd::numbers_of_faces(table, id, n, out);
+  else
+    kernels::numbers_of_faces<R>(table, id, n, out);
 }
 
 template <std::floating_point R>
@@ -91,7 +100,7 @@ void put_face_row(const std::uint32_t* id, const std::uint32_t* face, std::size_
 template <std::floating_point R>
 struct RowScratch {
   kernels::LightRows<R> light;
-  R* side = nullptr;
+  R *side = nullptr, *opacity = nullptr;
   std::uint32_t* tag = nullptr;
   std::vector<std::uint8_t>* present = nullptr;  ///< one flag a surface
 };
@@ -124,32 +133,6 @@ template <std::floating_point R>
 void add_row(const R* light, const R* reach, const Run& run, R* to) {
   for (std::size_t x = run.first; x < run.second; ++x)
     to[x] = to[x] + (reach == nullptr ? light[x] : light[x] * reach[x]);
-}
-
-/// Scales a row's premultiplied colours by the opacity of the face that each shows; nothing seen stays nothing. Blocks of
-/// a fixed length vectorise; most of them show one face.
-template <std::floating_point R>
-void fade_row(const Scene<R>& s, const std::uint32_t* id, std::size_t n, const kernels::ColorRows<R>& out) {
-  if (s.opacity.empty()) return;
-  constexpr std::size_t block = 16;
-  const auto of = [&](std::uint32_t face) { return face < s.opacity.size() ? s.opacity[face] : R(1); };
-  std::size_t x = 0;
-  for (; x + block <= n; x += block) {
-    std::array<R, block> opacity;
-    std::uint32_t others = 0;
-    for (std::size_t k = 0; k < block; ++k) others |= id[x + k] ^ id[x];
-    if (others == 0)
-      opacity.fill(of(id[x]));
-    else
-      for (std::size_t k = 0; k < block; ++k) opacity[k] = of(id[x + k]);
-    for (R* plane : out.plane) {
-      if (plane == nullptr) continue;
-      for (std::size_t k = 0; k < block; ++k) plane[x + k] *= opacity[k];
-    }
-  }
-  for (; x < n; ++x)
-    for (R* plane : out.plane)
-      if (plane != nullptr) plane[x] *= of(id[x]);
 }
 
 /// Whether a point of the row that shows a face is not opaque; null: all are. Blocks of a fixed length vectorise.
@@ -189,20 +172,22 @@ void cover_row(const std::uint32_t* id, const R* alpha, std::size_t n, const ker
       plane[x] = id[x] == nothing_there || alpha[x] == R(0) ? R(0) : plane[x] * alpha[x];
 }
 
-/// Colours of a row of opaque faces; transparent black where nothing is seen.
+/// Premultiplied colours of a row of faces, each as opaque as the scene says; transparent black where nothing is seen.
 template <std::floating_point R>
 void shade_row(const Scene<R>& s, const PointRow<R>& in, std::size_t n, const RowScratch<R>& scratch,
                const kernels::ColorRows<R>& out) {
   kernels::PointRows<R> points{in.normal, in.position, nullptr, in.reach};
   if (in.normal[0] != nullptr && !s.side.empty()) {
-    for (std::size_t x = 0; x < n; ++x) scratch.side[x] = in.id[x] < s.side.size() ? s.side[in.id[x]] : R(1);
+    face_number_row<R>(s.side, in.id, n, scratch.side);
     points.sign = scratch.side;
   }
+  const R* opacity = s.opacity.empty() ? nullptr : scratch.opacity;
+  if (opacity != nullptr) face_number_row<R>(s.opacity, in.id, n, scratch.opacity);
   const auto draw = [&](const Surface<R>& surface, kernels::Selection which, bool keep) {
     const bool lit = in.normal[0] == nullptr;
     if (!lit) receive_row(s.setup(surface), points, which, n, scratch.light);
-    reflect_row(surface.colors, lit ? in.received : kernels::LightInput<R>(scratch.light), in.albedo, which,
-                keep, n, out);
+    reflect_row(surface.colors, lit ? in.received : kernels::LightInput<R>(scratch.light), in.albedo, opacity,
+                which, keep, n, out);
   };
   if (s.surface_of.empty()) return draw(s.surfaces[0], {in.id, nothing_there}, false);
 

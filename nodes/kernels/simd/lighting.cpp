@@ -163,8 +163,8 @@ void receive(const LightSetup<float>& s, const PointRows<float>& in, Selection w
 }
 
 void reflect(const SurfaceColors<float>& c, const LightInput<float>& light,
-             const std::array<const float*, 3>& albedo, Selection which, bool keep, std::size_t n,
-             const ColorRows<float>& out) {
+             const std::array<const float*, 3>& albedo, const float* opacity, Selection which, bool keep,
+             std::size_t n, const ColorRows<float>& out) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   std::size_t x = 0;
@@ -183,14 +183,30 @@ void reflect(const SurfaceColors<float>& c, const LightInput<float>& light,
       if (albedo[k] != nullptr) color = hn::Mul(hn::LoadU(d, albedo[k] + x), color);
       if (light.specular[k] != nullptr)
         color = hn::Add(color, hn::Mul(hn::Set(d, c.specular[k]), hn::LoadU(d, light.specular[k] + x)));
-      put(k, hn::Add(color, hn::Set(d, c.emission[k])));
+      color = hn::Add(color, hn::Set(d, c.emission[k]));
+      put(k, opacity != nullptr ? hn::Mul(color, hn::LoadU(d, opacity + x)) : color);
     }
-    if (out.plane[3] != nullptr) put(3, hn::Set(d, 1.0F));
+    if (out.plane[3] != nullptr) put(3, opacity != nullptr ? hn::LoadU(d, opacity + x) : hn::Set(d, 1.0F));
   }
   if (x < n)
     kernels::reflect_light<float>(c, {advanced(light.diffuse, x), advanced(light.specular, x)},
-                                  advanced(albedo, x), {which.tag + x, which.wanted}, keep, n - x,
-                                  {advanced(out.plane, x)});
+                                  advanced(albedo, x), opacity == nullptr ? nullptr : opacity + x,
+                                  {which.tag + x, which.wanted}, keep, n - x, {advanced(out.plane, x)});
+}
+
+void look_up(std::span<const float> table, const std::uint32_t* id, std::size_t n, float* out) {
+  const D d;
+  const Du du;
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t x = 0;
+  for (; x + lanes <= n; x += lanes) {
+    const std::uint32_t first = id[x];
+    if (hn::AllTrue(du, hn::Eq(hn::LoadU(du, id + x), hn::Set(du, first))))
+      hn::StoreU(hn::Set(d, first < table.size() ? table[first] : 1.0F), d, out + x);
+    else
+      kernels::numbers_of_faces<float>(table, id + x, lanes, out + x);
+  }
+  kernels::numbers_of_faces<float>(table, id + x, n - x, out + x);
 }
 
 // One vector of pixels; false where none of them has a face left.
@@ -271,6 +287,7 @@ namespace frustum::kernels::simd {
 
 HWY_EXPORT(receive);
 HWY_EXPORT(reflect);
+HWY_EXPORT(look_up);
 HWY_EXPORT(take);
 HWY_EXPORT(put);
 
@@ -279,9 +296,12 @@ void receive_light(const LightSetup<float>& setup, const PointRows<float>& in, S
   HWY_DYNAMIC_DISPATCH(receive)(setup, in, which, n, out);
 }
 void reflect_light(const SurfaceColors<float>& colors, const LightInput<float>& light,
-                   const std::array<const float*, 3>& albedo, Selection which, bool keep, std::size_t n,
-                   const ColorRows<float>& out) {
-  HWY_DYNAMIC_DISPATCH(reflect)(colors, light, albedo, which, keep, n, out);
+                   const std::array<const float*, 3>& albedo, const float* opacity, Selection which,
+                   bool keep, std::size_t n, const ColorRows<float>& out) {
+  HWY_DYNAMIC_DISPATCH(reflect)(colors, light, albedo, opacity, which, keep, n, out);
+}
+void numbers_of_faces(std::span<const float> table, const std::uint32_t* id, std::size_t n, float* out) {
+  HWY_DYNAMIC_DISPATCH(look_up)(table, id, n, out);
 }
 bool take_face(std::uint32_t* left, std::size_t samples, std::size_t n, std::span<const float* const> in,
                std::uint32_t* face, std::span<float* const> mean) {

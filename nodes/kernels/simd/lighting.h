@@ -11,8 +11,11 @@ void receive_light(const LightSetup<float>& setup, const PointRows<float>& in, S
                    const LightRows<float>& out);
 
 void reflect_light(const SurfaceColors<float>& colors, const LightInput<float>& light,
-                   const std::array<const float*, 3>& albedo, Selection which, bool keep, std::size_t n,
-                   const ColorRows<float>& out);
+                   const std::array<const float*, 3>& albedo, const float* opacity, Selection which,
+                   bool keep, std::size_t n, const ColorRows<float>& out);
+
+/// Most vectors of points show one face: they cost one look into the table.
+void numbers_of_faces(std::span<const float> table, const std::uint32_t* id, std::size_t n, float* out);
 
 /// The whole row; the stride of `left` is n.
 bool take_face(std::uint32_t* left, std::size_t samples, std::size_t n, std::span<const float* const> in,

@@ -258,7 +258,8 @@ TEST(LightingSimd, EveryTargetHasTheBitsOfTheScalarTwin) {
                 for (std::size_t k = 0; k < 6; ++k) out[k][x] = 0;
             const kernels::SurfaceColors<float> colors{
                 {0.1F, 0.2F, 0.3F}, {1, 0.5F, 0.25F}, {0.4F, 0.4F, 0.4F}, {0.7F, 0, 1e-3F}};
-            reflect(colors, light, turned ? std::array<const float*, 3>{} : in.three(7), which, turned, n,
+            reflect(colors, light, turned ? std::array<const float*, 3>{} : in.three(7),
+                    e == 1 ? some.data() : nullptr, which, turned, n,
                     kernels::ColorRows<float>{{out[6].data(), out[7].data(), out[8].data(), out[9].data()}});
           };
           run([](auto&&... a) { kernels::receive_light<float>(a...); },
@@ -270,6 +271,43 @@ TEST(LightingSimd, EveryTargetHasTheBitsOfTheScalarTwin) {
               ASSERT_EQ(difference(simd[k], truth[k]), "") << target << " row " << k;
           });
         }
+}
+
+// By hand: 0.5 (0.25 (0.5 0.25 + 0.5) + 1 0.5 + 0) with alpha 0.25.
+TEST(Lighting, OpacityScalesColourAndAlphaOfWhatIsSeen) {
+  const float light = 0.5F, shine = 0.5F, albedo = 0.25F, opacity = 0.25F;
+  for (const bool seen : {true, false}) {
+    const std::uint32_t tag = seen ? 3 : kernels::nothing_there;
+    std::array<float, 4> got{7, 7, 7, 7};
+    kernels::reflect_light<float>(
+        {{0.25F, 0, 0}, {0.5F, 0, 0}, {1, 1, 1}, {}}, {{&light, &light, &light}, {&shine, &shine, &shine}},
+        {&albedo, &albedo, &albedo}, &opacity, {&tag}, false, 1, {{&got[0], &got[1], &got[2], &got[3]}});
+    EXPECT_EQ(got, (seen ? std::array{0.25F * (0.25F * 0.5F + 0.5F), 0.125F, 0.125F, 0.25F}
+                         : std::array<float, 4>{}));
+  }
+}
+
+TEST(LightingSimd, NumbersOfFacesAreLookedUpAlikeOnEveryTarget) {
+  const std::vector<float> table{0.5F, -1, 2, std::numeric_limits<float>::quiet_NaN()};
+  test::Random random(3);
+  std::vector<std::uint32_t> id(203);
+  for (std::size_t i = 0; i < id.size(); ++i)
+    id[i] = random.below(9) != 0 && i > 0 ? id[i - 1]
+            : random.below(4) == 0        ? no_face
+                                          : static_cast<std::uint32_t>(random.below(6));
+  for (const std::size_t n : {std::size_t{1}, std::size_t{16}, std::size_t{37}, id.size()}) {
+    std::vector<float> want(n), got(n);
+    for (std::size_t i = 0; i < n; ++i) want[i] = id[i] < 4 ? table[id[i]] : 1;
+    kernels::numbers_of_faces<float>(table, id.data(), n, got.data());
+    EXPECT_EQ(difference(got, want), "");
+    test::for_each_simd_target([&](const char* target) {
+      std::vector<float> out(n + 1, 7);
+      kernels::simd::numbers_of_faces(table, id.data(), n, out.data());
+      EXPECT_EQ(out.back(), 7);
+      out.pop_back();
+      EXPECT_EQ(difference(out, want), "") << target;
+    });
+  }
 }
 
 TEST(LightingSimd, FacesAreTakenAlikeOnEveryTarget) {
