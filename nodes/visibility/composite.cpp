@@ -81,8 +81,10 @@ class Filler {
  public:
   Filler(const State& s, const Tile& in, const Tile& out, Arena& arena)
       : s_(s), in_(in), out_(out), n_(static_cast<std::size_t>(out.rect().width())) {
-    for (double*& row : sum_) row = arena.take<double>(n_).data();
-    for (auto& row : wide_) row = arena.take<R>(n_);
+    const bool widens = std::any_of(s.planes.begin(), s.planes.end(),
+                                    [](const RealPlane& p) { return p.kind != plane_kind_of<R>; });
+    for (auto& rows : wide_)
+      if (widens) rows = arena.take<R>(n_ * static_cast<std::size_t>(s.layers));
   }
 
   void fill() {
@@ -91,37 +93,39 @@ class Filler {
         if (s_.one)
           pass(sample, y);
         else
-          composite(sample, y);
+          compositing::composite_row<R>(layers(sample, y), n_, out_rows(sample, y));
       }
   }
 
  private:
-  const R* row(std::size_t channel, int sample, int y) {
-    return real_row<R>(in_, s_.planes[channel], sample, y, wide_[channel]);
+  std::array<R*, 4> out_rows(int sample, int y) const {
+    return {out_row<R>(out_, 0, sample, y), out_row<R>(out_, 1, sample, y), out_row<R>(out_, 2, sample, y),
+            out_row<R>(out_, 3, sample, y)};
   }
   void pass(int sample, int y) {
+    const std::array<R*, 4> out = out_rows(sample, y);
     for (std::size_t c = 0; c < 4; ++c)
-      if (R* to = out_row<R>(out_, static_cast<int>(c), sample, y)) std::copy_n(row(c, sample, y), n_, to);
+      if (out[c] != nullptr) std::copy_n(real_row<R>(in_, s_.planes[c], sample, y, wide_[c]), n_, out[c]);
   }
-  void composite(int sample, int y) {
-    std::fill_n(sum_[0], n_, 1.0);
-    for (std::size_t c = 0; c < 4; ++c) std::fill_n(sum_[c + 1], n_, 0.0);
-    const kernels::CompositeSums sums{n_, sum_[0], sum_[1], sum_[2], sum_[3], sum_[4]};
-    for (int layer = 0; layer < s_.layers; ++layer) {
-      const int k = layer * out_.samples() + sample;
-      if (!compositing::put_row_behind<R>(row(0, k, y), row(1, k, y), row(2, k, y), row(3, k, y), sums))
-        break;
+  // All layers of a row: the picture's own, or widened.
+  kernels::LayerRows<R> layers(int sample, int y) {
+    kernels::LayerRows<R> rows{.first = {}, .stride = {}, .layers = s_.layers};
+    for (std::size_t c = 0; c < 4; ++c) {
+      rows.first[c] = real_row<R>(in_, s_.planes[c], sample, y, wide_[c]);
+      rows.stride[c] = in_.sample_stride() * out_.samples();
+      if (s_.planes[c].kind == plane_kind_of<R>) continue;
+      rows.stride[c] = static_cast<std::ptrdiff_t>(n_);
+      for (int layer = 1; layer < s_.layers; ++layer)
+        real_row<R>(in_, s_.planes[c], layer * out_.samples() + sample, y,
+                    wide_[c].subspan(static_cast<std::size_t>(layer) * n_));
     }
-    for (std::size_t c = 0; c < 4; ++c)
-      if (R* to = out_row<R>(out_, static_cast<int>(c), sample, y))
-        for (std::size_t x = 0; x < n_; ++x) to[x] = static_cast<R>(sum_[c + 1][x]);
+    return rows;
   }
 
   const State& s_;
   const Tile in_, &out_;
   std::size_t n_;
-  std::array<double*, 5> sum_{};  // what comes through, then the channels
-  std::array<std::span<R>, 4> wide_;
+  std::array<std::span<R>, 4> wide_;  // by channel a row a layer
 };
 
 void tile(const State& s, const TilesOf<Inputs>& in, const TilesOf<Outputs>& out, Arena& arena) {

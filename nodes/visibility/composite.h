@@ -6,14 +6,13 @@
 
 namespace frustum::compositing {
 
-// See kernels::put_behind: with vectors for single precision, the same bytes on every target.
+// See kernels::composite_layers: with vectors for single precision, the same bytes on every target.
 template <std::floating_point R>
-bool put_row_behind(const R* red, const R* green, const R* blue, const R* alpha,
-                    const kernels::CompositeSums& to) {
+void composite_row(const kernels::LayerRows<R>& in, std::size_t n, const std::array<R*, 4>& out) {
   if constexpr (sizeof(R) == 4)
-    return kernels::simd::put_behind(red, green, blue, alpha, to);
+    kernels::simd::composite_layers(in, n, out);
   else
-    return kernels::put_behind(red, green, blue, alpha, to);
+    kernels::composite_layers(in, n, out);
 }
 
 }  // namespace frustum::compositing

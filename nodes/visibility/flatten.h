@@ -13,7 +13,7 @@ namespace frustum::flattening {
 template <std::floating_point R>
 using Channels = std::array<const R*, 4>;
 
-// The fragments [begin, end) from the front to the back, as kernels::put_behind sums layers, with its bounds: in
+// The fragments [begin, end) from the front to the back, as kernels::composite_layers sums them, with its bounds: in
 // binary64, ending at the first of alpha 1.
 template <std::floating_point R>
 std::array<double, 4> flatten(const Channels<R>& from, std::size_t begin, std::size_t end) {

@@ -1,11 +1,10 @@
-// Vector form of kernels::put_behind<float>, which is its scalar twin: the same bytes on every SIMD target.
+// Vector form of kernels::composite_layers<float>, which is its scalar twin: the same bytes on every SIMD target.
 #pragma once
 
 #include "nodes/kernels/composite.h"
 
 namespace frustum::kernels::simd {
 
-bool put_behind(const float* red, const float* green, const float* blue, const float* alpha,
-                const CompositeSums& to);
+void composite_layers(const LayerRows<float>& in, std::size_t n, const std::array<float*, 4>& out);
 
 }  // namespace frustum::kernels::simd

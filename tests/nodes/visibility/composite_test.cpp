@@ -167,27 +167,37 @@ INSTANTIATE_TEST_SUITE_P(Targets, CompositeSimd, test::every_target(), test::tar
 
 TEST_P(CompositeSimd, HasTheBytesOfItsTwin) {
   Random random(6);
-  for (const std::size_t n : {1U, 2U, 3U, 7U, 8U, 64U, 99U}) {
-    std::array<std::vector<double>, 5> a, b;
-    for (auto* sums : {&a, &b})
-      for (std::size_t k = 0; k < 5; ++k) (*sums)[k].assign(n, k == 0 ? 1.0 : 0.0);
-    const auto sums = [n](auto& v) {
-      return kernels::CompositeSums{n, v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data()};
-    };
-    for (int layer = 0; layer < 6; ++layer) {
-      std::array<std::vector<float>, 4> rgba;
-      for (auto& plane : rgba)
-        for (std::size_t i = 0; i < n; ++i)
-          plane.push_back(layer == 5 ? 1.0F : static_cast<float>(random.uniform(0, 1)));
-      const auto put = [&](auto&& how, auto& to) {
-        return how(rgba[0].data(), rgba[1].data(), rgba[2].data(), rgba[3].data(), sums(to));
-      };
-      const bool shines = put(kernels::put_behind<float>, a);
-      EXPECT_EQ(put(kernels::simd::put_behind, b), shines);
-      EXPECT_EQ(shines, layer < 5);
+  for (const std::size_t n : {1U, 2U, 3U, 7U, 8U, 15U, 16U, 64U, 99U})
+    for (const int layers : {1, 2, 6}) {
+      std::array<std::vector<float>, 4> in, want, got;
+      kernels::LayerRows<float> rows{.first = {}, .stride = {}, .layers = layers};
+      std::array<float*, 4> to_want{}, to_got{};
+      for (std::size_t c = 0; c < 4; ++c) {
+        const std::size_t stride = n + c;
+        for (std::size_t i = 0; i < stride * static_cast<std::size_t>(layers); ++i)
+          in[c].push_back(random.below(5) == 0 ? static_cast<float>(random.below(2))
+                                               : static_cast<float>(random.uniform(0, 1)));
+        want[c].assign(n, 7), got[c].assign(n, 7);
+        rows.first[c] = in[c].data(), rows.stride[c] = static_cast<std::ptrdiff_t>(stride);
+        if (c == 1 && n == 3) continue;  // nobody reads green
+        to_want[c] = want[c].data(), to_got[c] = got[c].data();
+      }
+      kernels::composite_layers<float>(rows, n, to_want);
+      kernels::simd::composite_layers(rows, n, to_got);
+      EXPECT_EQ(got, want) << n << " samples of " << layers << " layers";
     }
-    EXPECT_EQ(a, b);
-  }
+}
+
+// A pixel's colour does not depend on what else is in its row, NaN and infinity behind what is opaque included.
+TEST_P(CompositeSimd, LooksAtNothingBehindWhatIsOpaque) {
+  constexpr std::size_t n = 37;
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  std::vector<float> layers(2 * n, 0.25F), alpha(2 * n, 0.5F), got(n);
+  for (std::size_t x = 0; x < n; x += 3) alpha[x] = 1, layers[n + x] = nan, alpha[n + x] = nan;
+  const float* color = layers.data();
+  const kernels::LayerRows<float> rows{{color, color, color, alpha.data()}, {n, n, n, n}, 2};
+  kernels::simd::composite_layers(rows, n, {got.data(), nullptr, nullptr, nullptr});
+  for (std::size_t x = 0; x < n; ++x) EXPECT_EQ(got[x], x % 3 == 0 ? 0.25F : 0.375F) << x;
 }
 
 }  // namespace
