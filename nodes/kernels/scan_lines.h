@@ -2,7 +2,8 @@
 // they overlap.
 // Source: Watkins 1970, A Real Time Visible Surface Algorithm, University of Utah UTEC-CSc-70-101: spans whose
 // order is not clear from their ends are halved. Departures: a line for each sample of a pixel; a span's order is
-// clear only where rounding cannot turn it, so the picture is that of the depth buffer at every sample.
+// clear only where rounding cannot turn it, so the picture is that of the depth buffer at every sample; a span that
+// begins behind one that outlasts it is left out at once.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +14,7 @@
 #include <vector>
 
 #include "nodes/kernels/face_depth.h"
-#include "nodes/kernels/fill_triangles.h"
+#include "nodes/kernels/fragment_rows.h"
 
 namespace frustum::scanline {
 
@@ -29,7 +30,7 @@ struct Counts {
 struct Segment {
   int row, sample;
   int begin, end;             // pixels, the end excluded
-  std::uint32_t active;       // spans that cover it
+  std::uint32_t active;       // spans that cover it, but for those known to lie behind another of them
   std::uint32_t comparisons;  // of depths, until all of it was decided
   std::uint32_t face;         // seen at its begin
 };
@@ -62,9 +63,14 @@ class Scanner {
     PixelRect box;        // pixels that it may cover
     mutable R band = -1;  // of its depth, found when two spans are first compared: see band_of
   };
+  // Its depths lie within those of its face's corners, so that two spans may be in order wherever they overlap.
   struct Span {
     const Face* face;
+    const Span* next;  // that begins at the same pixel
     int begin, end;
+    kernels::RowDepths<R> depth;
+
+    bool behind(const Span& other) const { return depth.least > other.depth.greatest; }
   };
   // One line: row y of a sample, and of each `period` pixels one, since those have the sample at one height.
   struct Line {
@@ -74,19 +80,34 @@ class Scanner {
     R* z;
   };
 
+  // What a line works with. A line has no more spans than faces, so that places in `spans` stay.
+  struct Work {
+    std::vector<Span> spans = {};
+    std::vector<const Span*> first;  // by pixel the last made span that begins there, or null
+    std::vector<const Span*> active = {},
+                             here = {};  // spans that go on; those that a segment is decided among
+    std::uint32_t comparisons = 0;       // since the last segment
+    int x0;                              // pixel of first[0]
+
+    const Span*& first_at(int x) { return first[static_cast<std::size_t>(x - x0)]; }
+    int end() const { return x0 + static_cast<int>(first.size()); }
+  };
+
   std::vector<Face> faces_of(PixelRect rect) const;
+  void add_face(std::uint32_t index, const PixelRect& box, std::vector<Face>& to) const;
   std::vector<const Face*> by_first_row(const std::vector<Face>& faces, PixelRect rect) const;
   R band_of(const Face& f) const;
-  bool cross(const Face& f, const Line& line, Span& out) const;
-  bool cross_narrow(const Face& f, const Line& line, Span& out) const;
-  void sweep(std::vector<Span>& spans, const Line& line, const Watch& watch) const;
-  void decide(std::vector<const Face*>& active, std::size_t from, int begin, int end, const Line& line,
+  static kernels::PixelSpan cross(const Face& f, const Line& line);
+  void find_spans(std::span<const Face* const> active, const Line& line, Work& work) const;
+  void sweep(Work& work, const Line& line, const Watch& watch) const;
+  static bool hidden(const Span& s, Work& work);
+  static void enter(int x, Work& work);
+  static int next_begin(int x, int end, Work& work);
+  static void choose_rivals(Work& work);
+  void decide(std::vector<const Span*>& active, std::size_t from, int begin, int end, const Line& line,
               Segment& seen, const Watch& watch) const;
-  void show(const Face& f, int begin, int end, const Line& line) const;
+  void show(const Span& s, int begin, int end, const Line& line) const;
 
-  static R depth(const Face& f, int x, const Line& line) {
-    return f.triangle.depth.at(x, line.y, line.x, line.dy);
-  }
   // Nearer, of the same depth the lower source.
   static bool nearer(const Face& a, R za, const Face& b, R zb) {
     if (za != zb) return za < zb;
@@ -97,42 +118,44 @@ class Scanner {
   kernels::TriangleBins bins_;
 };
 
-namespace detail {
-
-// a / b, rounded towards minus infinity; b > 0.
-inline std::int64_t floor_div(std::int64_t a, std::int64_t b) {
-  const std::int64_t q = a / b;
-  return q - (a % b < 0 ? 1 : 0);
+template <std::floating_point R>
+void Scanner<R>::add_face(std::uint32_t index, const PixelRect& box, std::vector<Face>& to) const {
+  if (const auto t = kernels::screen_triangle(scene_.mesh, index, scene_.sign()))
+    to.push_back({*t, index, scene_.mesh.origin.empty() ? index : scene_.mesh.origin[index], box});
 }
 
-}  // namespace detail
-
-// The faces of a rectangle, by their number.
+// The faces of a rectangle. Those that touch no side of their bin are in no other; the parts of the rest are put
+// together by their numbers.
 template <std::floating_point R>
 auto Scanner<R>::faces_of(PixelRect rect) const -> std::vector<Face> {
+  constexpr int last = kernels::TriangleBins::size - 1;
+  std::vector<Face> faces;
   std::vector<std::pair<std::uint32_t, PixelRect>> parts;
   kernels::each_bin_of(bins_, rect,
                        [&](PixelRect part, glm::ivec2 corner, std::span<const kernels::BinEntry> entries) {
-                         for (const kernels::BinEntry& e : entries)
-                           if (const PixelRect box = kernels::box_in(part, corner, e); !box.empty())
+                         for (const kernels::BinEntry& e : entries) {
+                           const PixelRect box = kernels::box_in(part, corner, e);
+                           if (box.empty()) continue;
+                           if (e.x0 > 0 && e.y0 > 0 && e.x1 < last && e.y1 < last)
+                             add_face(e.face, box, faces);
+                           else
                              parts.emplace_back(e.face, box);
+                         }
                        });
   std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<Face> faces;
-  faces.reserve(parts.size());
-  for (const auto& [index, box] : parts) {
-    if (!faces.empty() && faces.back().index == index) {
-      PixelRect& all = faces.back().box;
+  for (std::size_t i = 0; i < parts.size();) {
+    auto [index, all] = parts[i];
+    for (++i; i < parts.size() && parts[i].first == index; ++i) {
+      const PixelRect& box = parts[i].second;
       all = {std::min(all.x0, box.x0), std::min(all.y0, box.y0), std::max(all.x1, box.x1),
              std::max(all.y1, box.y1)};
-    } else if (const auto t = kernels::screen_triangle(scene_.mesh, index, scene_.sign())) {
-      faces.push_back({*t, index, scene_.mesh.origin.empty() ? index : scene_.mesh.origin[index], box});
     }
+    add_face(index, all, faces);
   }
   return faces;
 }
 
-// The edge table: those that begin in one row stand together, in the order of their numbers.
+// The edge table: those that begin in one row stand together.
 template <std::floating_point R>
 auto Scanner<R>::by_first_row(const std::vector<Face>& faces, PixelRect rect) const
     -> std::vector<const Face*> {
@@ -156,78 +179,97 @@ R Scanner<R>::band_of(const Face& f) const {
 // The pixels on the line whose samples the face covers: where all three edge functions, each linear along the line
 // and exact in whole numbers, are not negative. Narrow faces are tried pixel by pixel: a division is dearer.
 template <std::floating_point R>
-bool Scanner<R>::cross(const Face& f, const Line& line, Span& out) const {
+kernels::PixelSpan Scanner<R>::cross(const Face& f, const Line& line) {
   constexpr int narrow = 4;
-  if (f.box.x1 - f.box.x0 <= narrow) return cross_narrow(f, line, out);
-  std::int64_t begin = f.box.x0, end = f.box.x1;
-  for (const kernels::Edge& e : f.triangle.edge) {
-    const std::int64_t at0 = e.at_pixel(0, line.y) + e.at_offset(line.x, line.dy);
-    const std::int64_t slope = std::int64_t{e.a} * kernels::corner_unit;
-    if (slope > 0)
-      begin = std::max(begin, -detail::floor_div(at0, slope));
-    else if (slope < 0)
-      end = std::min(end, detail::floor_div(at0, -slope) + 1);
-    else if (at0 < 0)
-      return false;
+  std::array<std::int64_t, 3> first, step;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const kernels::Edge& e = f.triangle.edge[k];
+    first[k] = e.at_pixel(f.box.x0, line.y) + e.at_offset(line.x, line.dy);
+    step[k] = std::int64_t{e.a} * kernels::corner_unit;
   }
-  // The first pixel of the line's own phase at or right of `begin`.
-  begin += (line.phase - begin % line.period + line.period) % line.period;
-  out = {&f, static_cast<int>(begin), static_cast<int>(end)};
-  return begin < end;
-}
-
-template <std::floating_point R>
-bool Scanner<R>::cross_narrow(const Face& f, const Line& line, Span& out) const {
-  const auto covers = [&](int x) {
-    for (const kernels::Edge& e : f.triangle.edge)
-      if (!kernels::Edge::covers(e.at_pixel(x, line.y), e.at_offset(line.x, line.dy))) return false;
-    return true;
+  kernels::PixelSpan span{f.box.x0, f.box.x1};
+  if (span.x1 - span.x0 > narrow) {
+    for (std::size_t k = 0; k < 3 && !span.empty(); ++k)
+      span = kernels::cut_span(span, first[k] + (span.x0 - f.box.x0) * step[k], step[k]);
+    return span;
+  }
+  const auto outside = [&] { return (first[0] | first[1] | first[2]) < 0; };
+  const auto go_on = [&](int& x) {
+    for (std::size_t k = 0; k < 3; ++k) first[k] += step[k];
+    ++x;
   };
-  int x = f.box.x0 + (line.phase - f.box.x0 % line.period + line.period) % line.period;
-  while (x < f.box.x1 && !covers(x)) x += line.period;
-  out = {&f, x, x};
-  for (; x < f.box.x1 && covers(x); x += line.period) out.end = x + 1;
-  return out.begin < out.end;
+  while (span.x0 < f.box.x1 && outside()) go_on(span.x0);
+  span.x1 = span.x0;
+  while (span.x1 < f.box.x1 && !outside()) go_on(span.x1);
+  return span;
 }
 
 template <std::floating_point R>
-void Scanner<R>::show(const Face& f, int begin, int end, const Line& line) const {
+void Scanner<R>::find_spans(std::span<const Face* const> active, const Line& line, Work& work) const {
+  work.spans.clear();
+  for (const Face* f : active) {
+    const kernels::PixelSpan span = cross(*f, line);
+    // The first pixel of the line's own phase at or right of its begin.
+    const int begin = line.period == 1
+                          ? span.x0
+                          : span.x0 + (line.phase - span.x0 % line.period + line.period) % line.period;
+    if (begin >= span.x1) continue;
+    const Span*& first = work.first_at(begin);
+    work.spans.push_back(
+        {f, first, begin, span.x1, kernels::RowDepths<R>(f->triangle.depth, 0, line.y, line.x, line.dy)});
+    first = &work.spans.back();
+  }
+}
+
+template <std::floating_point R>
+void Scanner<R>::show(const Span& s, int begin, int end, const Line& line) const {
+  if (line.period == 1) {
+    const R sign = scene_.sign();
+    for (int x = begin; x < end; ++x) line.id[x] = s.face->index;
+    for (int x = begin; x < end; ++x) line.z[x] = sign * s.depth[x];
+    return;
+  }
   for (int x = begin; x < end; x += line.period) {
-    line.id[x] = f.index;
-    line.z[x] = scene_.sign() * depth(f, x, line);
+    line.id[x] = s.face->index;
+    line.z[x] = scene_.sign() * s.depth[x];
   }
 }
 
 // Shows active[from ..] in [begin, end), all of which cover it. Whoever is nearest at both ends, by more than
 // rounding, is nearest between them, since depths are linear; where that is nobody, the stretch is halved.
 template <std::floating_point R>
-void Scanner<R>::decide(std::vector<const Face*>& active, std::size_t from, int begin, int end,
+void Scanner<R>::decide(std::vector<const Span*>& active, std::size_t from, int begin, int end,
                         const Line& line, Segment& seen, const Watch& watch) const {
+  const std::size_t rivals = active.size();
+  if (rivals == from + 1) return show(*active[from], begin, end, line);
   const int pixels = (end - begin + line.period - 1) / line.period, last = begin + (pixels - 1) * line.period;
   const auto nearest_at = [&](int x) {
-    const Face* best = active[from];
-    R z = depth(*best, x, line);
-    for (std::size_t i = from + 1; i < active.size(); ++i) {
-      const R other = depth(*active[i], x, line);
+    const Span* best = active[from];
+    R z = best->depth[x];
+    for (std::size_t i = from + 1; i < rivals; ++i) {
+      const R other = active[i]->depth[x];
       ++seen.comparisons;
-      if (nearer(*active[i], other, *best, z)) best = active[i], z = other;
+      if (nearer(*active[i]->face, other, *best->face, z)) best = active[i], z = other;
     }
     return std::pair(best, z);
   };
   constexpr int brief = 4;  // pixels: to try each of them is as dear as both ends twice
   if (pixels <= brief) {
-    for (int x = begin; x < end; x += line.period) show(*nearest_at(x).first, x, x + 1, line);
+    for (int x = begin; x < end; x += line.period) {
+      const auto [best, z] = nearest_at(x);
+      line.id[x] = best->face->index;
+      line.z[x] = scene_.sign() * z;
+    }
     return;
   }
   const auto [best, z_begin] = nearest_at(begin);
   const auto [at_last, z_last] = nearest_at(last);
-  const std::size_t rivals = active.size();
   for (std::size_t i = from; i < rivals; ++i) {
-    const Face* f = active[i];
+    const Span* s = active[i];
     const auto clear = [&, best = best](R z, int x) {
-      return depth(*f, x, line) - z > band_of(*f) + band_of(*best);
+      return s->depth[x] - z > band_of(*s->face) + band_of(*best->face);
     };
-    if (f != best && !(clear(z_begin, begin) && clear(depth(*best, last, line), last))) active.push_back(f);
+    if (s != best && !(clear(z_begin, begin) && clear(best->depth[last], last))) active.push_back(s);
   }
   if (active.size() == rivals && best == at_last) return show(*best, begin, end, line);
   active.push_back(best);
@@ -240,34 +282,82 @@ void Scanner<R>::decide(std::vector<const Face*>& active, std::size_t from, int 
   active.resize(rivals);
 }
 
+// Whether an active span that goes on for as long is nearer all the way.
+template <std::floating_point R>
+bool Scanner<R>::hidden(const Span& s, Work& work) {
+  for (const Span* other : work.active) {
+    ++work.comparisons;
+    if (other->end >= s.end && s.behind(*other)) return true;
+  }
+  return false;
+}
+
+// Takes up the spans that begin at x, and leaves out what one of them hides for the rest of its way.
+template <std::floating_point R>
+void Scanner<R>::enter(int x, Work& work) {
+  for (const Span* s = std::exchange(work.first_at(x), nullptr); s != nullptr; s = s->next) {
+    if (hidden(*s, work)) continue;
+    std::erase_if(work.active, [&](const Span* other) { return s->end >= other->end && other->behind(*s); });
+    work.active.push_back(s);
+  }
+}
+
+// The first pixel in (x, end) at which a span begins that is not hidden at once, or `end`. Forgets those that are.
+template <std::floating_point R>
+int Scanner<R>::next_begin(int x, int end, Work& work) {
+  for (++x; x < end; ++x) {
+    const Span* s = work.first_at(x);
+    while (s != nullptr && hidden(*s, work)) s = s->next;
+    work.first_at(x) = s;
+    if (s != nullptr) return x;
+  }
+  return end;
+}
+
+// Of the active spans those that may be seen: not behind the one whose farthest depth is nearest.
+template <std::floating_point R>
+void Scanner<R>::choose_rivals(Work& work) {
+  const Span* front = *std::min_element(work.active.begin(), work.active.end(), [](auto* a, auto* b) {
+    return a->depth.greatest < b->depth.greatest;
+  });
+  work.here.clear();
+  for (const Span* s : work.active)
+    if (!s->behind(*front)) work.here.push_back(s);
+  work.comparisons += static_cast<std::uint32_t>(work.active.size() - 1);
+}
+
 // Moves along the line from one begin or end of a span to the next.
 template <std::floating_point R>
-void Scanner<R>::sweep(std::vector<Span>& spans, const Line& line, const Watch& watch) const {
-  std::sort(spans.begin(), spans.end(), [](const Span& a, const Span& b) {
-    return std::pair(a.begin, a.face->index) < std::pair(b.begin, b.face->index);
-  });
-  std::vector<Span> active;
-  std::vector<const Face*> here;
-  std::size_t next = 0;
-  for (int x = 0; next < spans.size() || !active.empty();) {
-    if (active.empty()) x = spans[next].begin;
-    while (next < spans.size() && spans[next].begin <= x) active.push_back(spans[next++]);
-    int end = next < spans.size() ? spans[next].begin : active.front().end;
-    for (const Span& s : active) end = std::min(end, s.end);
+void Scanner<R>::sweep(Work& work, const Line& line, const Watch& watch) const {
+  work.active.clear();
+  for (int x = work.x0; x < work.end();) {
+    enter(x, work);
+    if (work.active.empty()) {
+      x = next_begin(x, work.end(), work);
+      continue;
+    }
+    int end = work.active.front()->end;
+    for (const Span* s : work.active) end = std::min(end, s->end);
+    end = next_begin(x, end, work);
     end = x + (end - x + line.period - 1) / line.period * line.period;  // a pixel of the line's own
-    here.clear();
-    for (const Span& s : active) here.push_back(s.face);
-    Segment seen{line.y, line.sample, x, end, static_cast<std::uint32_t>(here.size()), 0, 0};
-    decide(here, 0, x, end, line, seen, watch);
+    choose_rivals(work);
+    Segment seen{line.y,
+                 line.sample,
+                 x,
+                 end,
+                 static_cast<std::uint32_t>(work.active.size()),
+                 std::exchange(work.comparisons, 0u),
+                 0};
+    decide(work.here, 0, x, end, line, seen, watch);
     if (watch.counts != nullptr) {
       ++watch.counts->segments;
       watch.counts->comparisons += seen.comparisons;
-      watch.counts->most_active = std::max<std::uint64_t>(watch.counts->most_active, active.size());
+      watch.counts->most_active = std::max<std::uint64_t>(watch.counts->most_active, work.active.size());
     }
     seen.face = line.id[x];
     if (watch.segment) watch.segment(seen);
     x = end;
-    std::erase_if(active, [&](const Span& s) { return s.end <= x; });
+    std::erase_if(work.active, [&](const Span* s) { return s->end <= x; });
   }
 }
 
@@ -277,12 +367,13 @@ void Scanner<R>::fill(PixelRect rect, PlaneView<std::uint32_t> id, PlaneView<R> 
   const std::vector<const Face*> edge_table = by_first_row(faces, rect);
   const kernels::SamplePositions& pattern = scene_.pattern;
   std::vector<const Face*> active;
-  std::vector<Span> spans;
+  Work work{.first = std::vector<const Span*>(static_cast<std::size_t>(rect.x1 - rect.x0)), .x0 = rect.x0};
   std::size_t next = 0;
   for (int y = rect.y0; y < rect.y1; ++y) {
     for (; next < edge_table.size() && edge_table[next]->box.y0 <= y; ++next)
       active.push_back(edge_table[next]);
     std::erase_if(active, [&](const Face* f) { return f->box.y1 <= y; });
+    work.spans.reserve(active.size());
     for (int s = 0; s < pattern.samples; ++s) {
       std::uint32_t* id_row = id.row(s, y - rect.y0);
       R* z_row = z.row(s, y - rect.y0);
@@ -292,15 +383,13 @@ void Scanner<R>::fill(PixelRect rect, PlaneView<std::uint32_t> id, PlaneView<R> 
         const std::size_t i = pattern.index(s, phase, y);
         const Line line{
             s, y, phase, pattern.period, pattern.x[i], pattern.y[i], id_row - rect.x0, z_row - rect.x0};
-        spans.clear();
-        for (const Face* f : active)
-          if (Span span; cross(*f, line, span)) spans.push_back(span);
+        find_spans(active, line, work);
         if (watch.counts != nullptr) {
           ++watch.counts->lines;
           watch.counts->edges += 3 * active.size();
-          watch.counts->spans += spans.size();
+          watch.counts->spans += work.spans.size();
         }
-        sweep(spans, line, watch);
+        sweep(work, line, watch);
       }
     }
   }

@@ -53,5 +53,39 @@ TEST(VisibilityScanline, ComparesOnlyWhereSpansOverlap) {
   EXPECT_EQ(counts.most_active, 1U);
 }
 
+// A small face behind a large one makes no segments of its own; one that sticks out does where it does.
+TEST(VisibilityScanline, LeavesOutWhatBeginsBehindASpanThatOutlastsIt) {
+  for (const bool first : {false, true}) {  // in whichever order they come
+    test::ScreenMeshMaker<float> m;
+    const auto put = [&](double x0, double x1, double z) {
+      const auto a = m.vertex(x0, 0, z), b = m.vertex(x1, 0, z), c = m.vertex(x0, 640, z);
+      m.face.emplace_back(a, b, c);
+    };
+    if (first) put(20, 60, 0.5);
+    put(10, 80, 0.25);  // at the middle of line 10 up to 78.9
+    if (!first) put(20, 60, 0.5);
+    put(70, 90, 0.75);  // and 89.7
+    const kernels::PixelRect window{0, 0, 96, 64};
+    const scanline::Scanner<float> scanner({m.position, m.face, {}}, kernels::centre_sample(), window,
+                                           kernels::DepthOrder::standard, {});
+    std::vector<std::uint32_t> id(96 * 64);
+    std::vector<float> z(96 * 64);
+    scanline::Counts counts;
+    std::vector<scanline::Segment> line;
+    scanner.fill(window, {id.data(), 96, 0}, {z.data(), 96, 0}, {&counts, [&](const scanline::Segment& s) {
+                                                                   if (s.row == 10) line.push_back(s);
+                                                                 }});
+    ASSERT_EQ(line.size(), 3U);
+    const int begin[3] = {10, 70, 79};
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(line[i].begin, begin[i]);
+    EXPECT_EQ(line.back().end, 90);
+    for (int x = 0; x < 96; ++x)
+      EXPECT_EQ(z[10 * 96 + static_cast<std::size_t>(x)], x < 10 || x >= 90 ? 1
+                                                          : x < 79          ? 0.25F
+                                                                            : 0.75F)
+          << x;
+  }
+}
+
 }  // namespace
 }  // namespace frustum
