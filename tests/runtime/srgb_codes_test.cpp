@@ -27,6 +27,7 @@ TEST(SrgbCodes, AreThoseOfTheFormulaEverywhere) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const double v : {-infinity, -1.0, -0.0, 0.0, 0x1p-1074, 1.0, 1 + 0x1p-52, 7.0, infinity})
     EXPECT_EQ(code(v), srgb_code_by_formula(v)) << v;
+  EXPECT_EQ(code(std::numeric_limits<double>::quiet_NaN()), 0);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> light(0, 1);
   for (int i = 0; i < 100000; ++i) {

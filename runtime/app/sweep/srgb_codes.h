@@ -16,7 +16,7 @@ inline int srgb_code_by_formula(double light) {
   return static_cast<int>(std::clamp(kernels::encode(kernels::Curve::srgb, light), 0.0, 1.0) * 255 + 0.5);
 }
 
-// The same function for every number but NaN. Made once: some 1500 powers, less than a thumbnail has.
+// The same function, and 0 for NaN. Made once: some 1500 powers, less than a thumbnail has.
 class SrgbCodes {
  public:
   SrgbCodes() {
@@ -35,7 +35,8 @@ class SrgbCodes {
 
   // No bin has more than one step: the curve is steepest at 0, where codes are 1/3294 apart.
   int operator()(double light) const {
-    std::size_t k = first_[static_cast<std::size_t>(std::clamp(light, 0.0, 1.0) * bins)];
+    if (!(light > 0)) return 0;
+    std::size_t k = first_[static_cast<std::size_t>(std::min(light, 1.0) * bins)];
     while (k < least_.size() && light >= least_[k]) ++k;
     return static_cast<int>(k);
   }
