@@ -14,8 +14,10 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <new>
 #include <optional>
 
@@ -197,7 +199,10 @@ class Runner {
 
   // Readers know the file and not the parameter that names it: of a node with one such parameter it is that.
   std::string file_part(std::size_t n, const std::string& code) const {
-    if (code != "cannot_read_file" && code != "malformed_file" && code != "missing_file") return {};
+    constexpr std::array<std::string_view, 7> of_files{
+        "cannot_read_file",    "malformed_file",        "missing_file", "unsafe_path",
+        "unsupported_version", "unsupported_extension", "not_deep"};
+    if (std::find(of_files.begin(), of_files.end(), code) == of_files.end()) return {};
     std::string part;
     for (const ParamField& field : state_.graph.nodes[n].type->params.fields) {
       if (!field.type->files) continue;
@@ -394,6 +399,34 @@ Diagnostics overwriting_outputs(const Graph& graph, const RunOptions& options) {
   return problems;
 }
 
+// Outputs that write one file now that {frame} is a number.
+Diagnostics outputs_of_one_file(const Graph& graph, const RunOptions& options) {
+  Diagnostics problems;
+  std::map<std::string, const GraphOutput*> first;
+  for (const std::size_t i : options.demand.outputs) {
+    const GraphOutput& output = graph.outputs[i];
+    const std::string path = output_path(output, options);
+    const auto [same, is_new] =
+        first.try_emplace(std::filesystem::path(path).lexically_normal().string(), &output);
+    if (is_new) continue;
+    const SourcePlace &at = output.place, &other = same->second->place;
+    problems.add(
+        {.code = "duplicate_file",
+         .pointer = at.pointer,
+         .message = fmt::format("'{}' and '{}' both write {}", same->second->name, output.name, path),
+         .expected = "a file for each output",
+         .got = output.file,
+         .related = {{.pointer = other.pointer,
+                      .message = fmt::format("'{}' writes it here", same->second->name),
+                      .line = other.line,
+                      .column = other.column}},
+         .file = at.file,
+         .line = at.line,
+         .column = at.column});
+  }
+  return problems;
+}
+
 }  // namespace
 
 std::string_view name_of(CacheVerdict v) {
@@ -419,6 +452,7 @@ RunResult run_graph(const Graph& graph, const RunOptions& options) {
   if (!options.only_facts) {
     RunResult refused;
     refused.problems = overwriting_outputs(graph, options), refused.end = End::failed;
+    refused.problems.add(outputs_of_one_file(graph, options));
     if (refused.problems.has_errors()) return refused;
     for (const std::size_t i : options.demand.outputs) folders.above(output_path(graph.outputs[i], options));
   }

@@ -355,6 +355,31 @@ TEST(CliEnds, FramesThatWouldWriteOverEachOtherAreRefused) {
   EXPECT_EQ(frames("a{frame}.exr", "", "1-2147483647").code, 2);
 }
 
+// "o{frame}.json" is another name than "o0003.json" until the frame is known.
+TEST(CliEnds, AFrameThatIsAnotherOutputsNameIsRefused) {
+  const TempFolder folder;
+  const auto graph = folder.write("g.json", graph_with(R"("box": { "type": "mesh.box" })",
+                                                       R"("o": { "from": "box", "file": "o{frame}.ply" },
+    "three": { "from": "box", "file": "o0003.ply" }, "zero": { "from": "box", "file": "./o0000.ply" })"));
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"run", graph, "--out", folder.file("out"), "--json"});
+    return frustum(more);
+  };
+  const auto expect_refused = [&](const std::vector<std::string>& more, const std::string& pointer) {
+    const auto r = run(more);
+    EXPECT_EQ(r.code, 2) << r.out;
+    const json d = json::parse(r.out)["diagnostics"].back();
+    EXPECT_EQ(d["code"], "duplicate_file");
+    EXPECT_EQ(d["pointer"], pointer);
+    EXPECT_EQ(d["related"][0]["pointer"], "/outputs/o/file");
+    EXPECT_GT(d["related"][0]["column"], 0);
+    EXPECT_FALSE(std::filesystem::exists(folder.file("out"))) << "nothing ran";
+  };
+  expect_refused({"--frames", "3"}, "/outputs/three/file");
+  expect_refused({}, "/outputs/zero/file");
+  EXPECT_EQ(run({"--frames", "3", "--want", "o", "--want", "zero"}).code, 0);
+}
+
 // ----- what is said
 
 TEST(CliEnds, IdsAreIntegersAndNoFaceIsNone) {
