@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string_view>
@@ -39,6 +40,20 @@ const char* read_decimal(const char* at, const char* end, R& value) {
     return stop;
   }
   return error == std::errc() ? stop : nullptr;
+}
+
+// Whether a text that read_decimal() reads as infinite is a finite number, and R ends before it.
+template <class R>
+bool is_beyond(std::string_view text) {
+  R value{};
+  const char* stop = read_decimal(text.data(), text.data() + text.size(), value);
+  return stop == text.data() + text.size() && std::isinf(value) &&
+         text.find_first_of("0123456789") != std::string_view::npos;
+}
+// "single precision", for sentences.
+template <class R>
+constexpr std::string_view precision_name() {
+  return sizeof(R) == sizeof(float) ? "single precision" : "double precision";
 }
 
 }  // namespace frustum

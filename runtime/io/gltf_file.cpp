@@ -70,6 +70,8 @@ Tree parsed(std::string_view json, const FilePath& file) {
     const std::size_t start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
     throw NodeError("malformed_file",
                     fmt::format("{}:{}:{}: this is not JSON here", file.written, line, 1 + at - start));
+  } catch (const Tree::out_of_range&) {  // the only one that reading throws
+    fail(file, "", "a number is beyond the largest one, 1.8e308");
   } catch (const Tree::exception& e) {
     fail(file, "", e.what());
   }

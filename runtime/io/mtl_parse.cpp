@@ -70,7 +70,7 @@ class Parser {
 
   double number() {
     const auto v = in_.number<double>();
-    if (!v) fail(fmt::format("'{}' is not a finite number", printable(in_.word())));
+    if (!v) fail(obj::no_number<double>(in_.word()));
     return *v;
   }
 
@@ -151,7 +151,7 @@ class Parser {
     in_ = after;
     in_.skip_blanks();
     glm::dvec3 v = option == "-s" ? glm::dvec3(1) : glm::dvec3(0);
-    if (!numbers(v)) fail(fmt::format("'{}' is not a finite number", printable(in_.word())));
+    if (!numbers(v)) fail(obj::no_number<double>(in_.word()));
     if (option == "-s")
       now_->scale = glm::dvec2(v);
     else if (option == "-o")

@@ -2,11 +2,15 @@
 #pragma once
 
 #include "runtime/io/decimal.h"
+#include "runtime/io/printable.h"
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace frustum::obj {
@@ -91,5 +95,12 @@ class Cursor {
  private:
   const char *begin_, *at_, *end_;
 };
+
+// Why a word is no number of R: it is none, or infinite, or R ends before it.
+template <class R>
+std::string no_number(std::string_view word) {
+  return is_beyond<R>(word) ? fmt::format("'{}' is beyond {}", printable(word), precision_name<R>())
+                            : fmt::format("'{}' is not a finite number", printable(word));
+}
 
 }  // namespace frustum::obj

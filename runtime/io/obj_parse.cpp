@@ -94,7 +94,7 @@ class Parser {
       const auto n = in_.template number<R>();
       if (!n)
         return fail(in_.line_done() ? fmt::format("{} numbers are needed, and there are {}", least, i)
-                                    : fmt::format("'{}' is not a finite number", printable(in_.word())));
+                                    : no_number<R>(in_.word()));
       to.push_back(*n);
     }
   }

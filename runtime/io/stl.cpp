@@ -166,7 +166,7 @@ class TextReader {
       const std::string_view w = word();
       const char* stop = read_decimal(w.data(), w.data() + w.size(), v[k]);
       if (w.empty() || (finite && (stop != w.data() + w.size() || !std::isfinite(v[k]))))
-        fail(w, "a finite number");
+        fail(w, is_beyond<R>(w) ? fmt::format("a number of {}", precision_name<R>()) : "a finite number");
     }
     return v;
   }

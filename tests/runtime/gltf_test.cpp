@@ -409,6 +409,14 @@ TEST(Gltf, AFileCutOffAnywhereIsAProblemAndNotACrash) {
   EXPECT_THAT(test::gltf_problem(text.substr(0, 20)).second, HasSubstr("box.glb:1:"));
 }
 
+TEST(Gltf, ANumberBeyondAllIsSaidInPlainWords) {
+  std::string text = test::one_triangle().document.dump();
+  text.insert(1, R"("extras": 1e400, )");
+  EXPECT_EQ(test::gltf_problem(text),
+            (std::pair<std::string, std::string>("malformed_file",
+                                                 "box.glb: a number is beyond the largest one, 1.8e308")));
+}
+
 TEST(Gltf, DeepTreesOfNodesAndOfJsonDoNotUseUpTheStack) {
   GltfMaker g = test::one_triangle();
   constexpr int depth = 100000;

@@ -190,7 +190,7 @@ TEST_F(Obj, SeveralLibrariesOnOneLineAndNamesWithBlanks) {
 TEST_F(Obj, SaysWhatIsWrongInAMaterialFile) {
   EXPECT_EQ(problem("newmtl one\nKd 1 x 0\n"), "a.mtl:2: 'x' is not a finite number");
   EXPECT_EQ(problem("newmtl one\n\nKd 1 0\n"), "a.mtl:3: '' is not a finite number");
-  EXPECT_EQ(problem("newmtl one\nNs 1e400\n"), "a.mtl:2: '1e400' is not a finite number");
+  EXPECT_EQ(problem("newmtl one\nNs 1e400\n"), "a.mtl:2: '1e400' is beyond double precision");
   EXPECT_EQ(problem("newmtl one\nKe nan nan nan\n"), "a.mtl:2: 'nan' is not a finite number");
   EXPECT_EQ(problem("newmtl one\nmap_Kd -s x.png\n"), "a.mtl:2: 'x.png' is not a finite number");
   EXPECT_EQ(problem("\x89PNG\r\n"), "a.mtl:1: '?PNG' is not a statement of an MTL file");

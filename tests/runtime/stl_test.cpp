@@ -93,7 +93,7 @@ TEST(Stl, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(problem("solid a\n" + facet("0 0 1", "0 0 0", "1 0 inf", "0 1 0") + "endsolid\n"),
             "m.stl:5: 'inf' stands where a finite number is expected");
   EXPECT_EQ(problem("solid a\n" + facet("0 0 1", "0 0 0", "1 0 1e99", "0 1 0") + "endsolid\n"),
-            "m.stl:5: '1e99' stands where a finite number is expected");
+            "m.stl:5: '1e99' stands where a number of single precision is expected");
   EXPECT_EQ(problem("solid a\n" + facet("0 0 1", "0 0 0", "1 0", "0 1 0") + "endsolid\n"),
             "m.stl:6: 'vertex' stands where a finite number is expected");
   EXPECT_EQ(problem("solid a\nfacet normals 0 0 1\n"),

@@ -150,7 +150,7 @@ TEST(LoadMesh, NamesTheLineThatIsWrong) {
   EXPECT_THAT(problem(v + "f 1 2 99999999999\n"), HasSubstr("is not a corner"));
   EXPECT_THAT(problem("v 1 2\n"), HasSubstr("m.obj:1: 3 numbers are needed, and there are 2"));
   EXPECT_THAT(problem("v 1 2 nan\n"), HasSubstr("'nan' is not a finite number"));
-  EXPECT_THAT(problem("v 1 2 1e999\n"), HasSubstr("'1e999' is not a finite number"));
+  EXPECT_THAT(problem("v 1 2 1e999\n"), HasSubstr("'1e999' is beyond single precision"));
   EXPECT_THAT(problem("v 1 2 3x\n"), HasSubstr("'3x' is not a finite number"));
   EXPECT_THAT(problem(std::string("\x89PNG\r\n\x1a\n\0\0", 10)),
               HasSubstr("m.obj:1: '?PNG' is not a statement"));
