@@ -231,7 +231,8 @@ HWY_INLINE void weigh(const AttributeScene<float>& scene, const LaneEdges& c, co
   const HalfFloat df;
   const HalfInt di;
   const auto unit = hn::Set(dd, double{sample_unit});
-  const auto pixel = hn::PromoteTo(dd, hn::Iota(di, at.x + i));
+  // Not Iota from at.x + i: one from a number that is not a constant goes through memory, lane by lane.
+  const auto pixel = hn::PromoteTo(dd, hn::Add(hn::Iota(di, 0), hn::Set(di, at.x + i)));
   const auto sx = hn::Add(hn::Mul(pixel, unit), hn::PromoteTo(dd, hn::Load(di, p.offset_x + i)));
   const auto sy =
       hn::Add(hn::Set(dd, at.y * double{sample_unit}), hn::PromoteTo(dd, hn::Load(di, p.offset_y + i)));

@@ -151,7 +151,8 @@ HWY_INLINE V second_of(const Pairs& p) { return p.part[1]; }
 // The four numbers of each point of vector `g` of a group get the number that lane has for the point.
 HWY_INLINE V spread(V of, std::size_t g) {
   const Di di;
-  const Vi point = hn::ShiftRight<2>(hn::Iota(di, static_cast<std::int32_t>(4 * blocks() * g)));
+  const Vi first = hn::Set(di, static_cast<std::int32_t>(blocks() * g));
+  const Vi point = hn::Add(hn::ShiftRight<2>(hn::Iota(di, 0)), first);
   return hn::TableLookupLanes(of, hn::IndicesFromVec(D(), point));
 }
 
