@@ -52,15 +52,19 @@ class Scanner {
   const kernels::TriangleBins& bins() const { return bins_; }
   int samples() const { return scene_.pattern.samples; }
 
-  // Fills `id` and `z` as fill_triangles does, the same bytes. Memory beyond the planes: the edges of the faces
-  // that meet `rect`, and O(width) for the spans of one line.
+  // Fills `id` and `z` as fill_triangles does, the same bytes. Memory beyond the planes: the numbers and boxes of the
+  // faces that meet `rect`, the edges of those that meet one line, and O(width) for its spans.
   void fill(PixelRect rect, PlaneView<std::uint32_t> id, PlaneView<R> z, const Watch& watch = {}) const;
 
  private:
+  struct Part {  // a face in the rectangle
+    std::uint32_t face;
+    PixelRect box;  // pixels that it may cover
+  };
   struct Face {
     kernels::ScreenTriangle<R> triangle;
     std::uint32_t index, origin;
-    PixelRect box;        // pixels that it may cover
+    PixelRect box;
     mutable R band = -1;  // of its depth, found when two spans are first compared: see band_of
   };
   // Its depths lie within those of its face's corners, so that two spans may be in order wherever they overlap.
@@ -93,12 +97,18 @@ class Scanner {
     int end() const { return x0 + static_cast<int>(first.size()); }
   };
 
-  std::vector<Face> faces_of(PixelRect rect) const;
-  void add_face(std::uint32_t index, const PixelRect& box, std::vector<Face>& to) const;
-  std::vector<const Face*> by_first_row(const std::vector<Face>& faces, PixelRect rect) const;
+  // The faces that meet a row. Those that end leave their place to others, so that all stay in the cache.
+  struct Active {
+    std::vector<Face> faces = {};
+    std::vector<std::uint32_t> now = {}, free = {};  // places of `faces`
+  };
+
+  std::vector<Part> parts_of(PixelRect rect) const;
+  static std::vector<Part> by_first_row(const std::vector<Part>& parts, PixelRect rect);
+  void begin_face(const Part& part, Active& active) const;
   R band_of(const Face& f) const;
   static kernels::PixelSpan cross(const Face& f, const Line& line);
-  void find_spans(std::span<const Face* const> active, const Line& line, Work& work) const;
+  static void find_spans(const Active& active, const Line& line, Work& work);
   void sweep(Work& work, const Line& line, const Watch& watch) const;
   static bool hidden(const Span& s, Work& work);
   static void enter(int x, Work& work);
@@ -118,54 +128,59 @@ class Scanner {
   kernels::TriangleBins bins_;
 };
 
-template <std::floating_point R>
-void Scanner<R>::add_face(std::uint32_t index, const PixelRect& box, std::vector<Face>& to) const {
-  if (const auto t = kernels::screen_triangle(scene_.mesh, index, scene_.sign()))
-    to.push_back({*t, index, scene_.mesh.origin.empty() ? index : scene_.mesh.origin[index], box});
-}
-
 // The faces of a rectangle. Those that touch no side of their bin are in no other; the parts of the rest are put
 // together by their numbers.
 template <std::floating_point R>
-auto Scanner<R>::faces_of(PixelRect rect) const -> std::vector<Face> {
+auto Scanner<R>::parts_of(PixelRect rect) const -> std::vector<Part> {
   constexpr int last = kernels::TriangleBins::size - 1;
-  std::vector<Face> faces;
-  std::vector<std::pair<std::uint32_t, PixelRect>> parts;
+  std::vector<Part> faces, pieces;
   kernels::each_bin_of(bins_, rect,
                        [&](PixelRect part, glm::ivec2 corner, std::span<const kernels::BinEntry> entries) {
                          for (const kernels::BinEntry& e : entries) {
                            const PixelRect box = kernels::box_in(part, corner, e);
                            if (box.empty()) continue;
-                           if (e.x0 > 0 && e.y0 > 0 && e.x1 < last && e.y1 < last)
-                             add_face(e.face, box, faces);
-                           else
-                             parts.emplace_back(e.face, box);
+                           const bool within = e.x0 > 0 && e.y0 > 0 && e.x1 < last && e.y1 < last;
+                           (within ? faces : pieces).push_back({e.face, box});
                          }
                        });
-  std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t i = 0; i < parts.size();) {
-    auto [index, all] = parts[i];
-    for (++i; i < parts.size() && parts[i].first == index; ++i) {
-      const PixelRect& box = parts[i].second;
-      all = {std::min(all.x0, box.x0), std::min(all.y0, box.y0), std::max(all.x1, box.x1),
-             std::max(all.y1, box.y1)};
+  std::sort(pieces.begin(), pieces.end(), [](const Part& a, const Part& b) { return a.face < b.face; });
+  for (std::size_t i = 0; i < pieces.size();) {
+    Part all = pieces[i];
+    for (++i; i < pieces.size() && pieces[i].face == all.face; ++i) {
+      const PixelRect& box = pieces[i].box;
+      all.box = {std::min(all.box.x0, box.x0), std::min(all.box.y0, box.y0), std::max(all.box.x1, box.x1),
+                 std::max(all.box.y1, box.y1)};
     }
-    add_face(index, all, faces);
+    faces.push_back(all);
   }
   return faces;
 }
 
 // The edge table: those that begin in one row stand together.
 template <std::floating_point R>
-auto Scanner<R>::by_first_row(const std::vector<Face>& faces, PixelRect rect) const
-    -> std::vector<const Face*> {
+auto Scanner<R>::by_first_row(const std::vector<Part>& parts, PixelRect rect) -> std::vector<Part> {
   std::vector<std::size_t> at(static_cast<std::size_t>(rect.y1 - rect.y0) + 1, 0);
-  const auto row = [&](const Face& f) { return static_cast<std::size_t>(f.box.y0 - rect.y0); };
-  for (const Face& f : faces) ++at[row(f) + 1];
+  const auto row = [&](const Part& p) { return static_cast<std::size_t>(p.box.y0 - rect.y0); };
+  for (const Part& p : parts) ++at[row(p) + 1];
   for (std::size_t y = 1; y < at.size(); ++y) at[y] += at[y - 1];
-  std::vector<const Face*> order(faces.size());
-  for (const Face& f : faces) order[at[row(f)]++] = &f;
+  std::vector<Part> order(parts.size());
+  for (const Part& p : parts) order[at[row(p)]++] = p;
   return order;
+}
+
+template <std::floating_point R>
+void Scanner<R>::begin_face(const Part& part, Active& active) const {
+  const auto triangle = kernels::screen_triangle(scene_.mesh, part.face, scene_.sign());
+  if (!triangle) return;
+  if (active.free.empty()) {
+    active.free.push_back(static_cast<std::uint32_t>(active.faces.size()));
+    active.faces.emplace_back();
+  }
+  const std::uint32_t place = active.free.back();
+  active.free.pop_back();
+  active.faces[place] = {*triangle, part.face,
+                         scene_.mesh.origin.empty() ? part.face : scene_.mesh.origin[part.face], part.box};
+  active.now.push_back(place);
 }
 
 template <std::floating_point R>
@@ -205,10 +220,11 @@ kernels::PixelSpan Scanner<R>::cross(const Face& f, const Line& line) {
 }
 
 template <std::floating_point R>
-void Scanner<R>::find_spans(std::span<const Face* const> active, const Line& line, Work& work) const {
+void Scanner<R>::find_spans(const Active& active, const Line& line, Work& work) {
   work.spans.clear();
-  for (const Face* f : active) {
-    const kernels::PixelSpan span = cross(*f, line);
+  for (const std::uint32_t place : active.now) {
+    const Face& f = active.faces[place];
+    const kernels::PixelSpan span = cross(f, line);
     // The first pixel of the line's own phase at or right of its begin.
     const int begin = line.period == 1
                           ? span.x0
@@ -216,7 +232,7 @@ void Scanner<R>::find_spans(std::span<const Face* const> active, const Line& lin
     if (begin >= span.x1) continue;
     const Span*& first = work.first_at(begin);
     work.spans.push_back(
-        {f, first, begin, span.x1, kernels::RowDepths<R>(f->triangle.depth, 0, line.y, line.x, line.dy)});
+        {&f, first, begin, span.x1, kernels::RowDepths<R>(f.triangle.depth, 0, line.y, line.x, line.dy)});
     first = &work.spans.back();
   }
 }
@@ -363,17 +379,20 @@ void Scanner<R>::sweep(Work& work, const Line& line, const Watch& watch) const {
 
 template <std::floating_point R>
 void Scanner<R>::fill(PixelRect rect, PlaneView<std::uint32_t> id, PlaneView<R> z, const Watch& watch) const {
-  const std::vector<Face> faces = faces_of(rect);
-  const std::vector<const Face*> edge_table = by_first_row(faces, rect);
+  const std::vector<Part> edge_table = by_first_row(parts_of(rect), rect);
   const kernels::SamplePositions& pattern = scene_.pattern;
-  std::vector<const Face*> active;
+  Active active;
   Work work{.first = std::vector<const Span*>(static_cast<std::size_t>(rect.x1 - rect.x0)), .x0 = rect.x0};
   std::size_t next = 0;
   for (int y = rect.y0; y < rect.y1; ++y) {
-    for (; next < edge_table.size() && edge_table[next]->box.y0 <= y; ++next)
-      active.push_back(edge_table[next]);
-    std::erase_if(active, [&](const Face* f) { return f->box.y1 <= y; });
-    work.spans.reserve(active.size());
+    std::erase_if(active.now, [&](std::uint32_t place) {
+      const bool ends = active.faces[place].box.y1 <= y;
+      if (ends) active.free.push_back(place);
+      return ends;
+    });
+    for (; next < edge_table.size() && edge_table[next].box.y0 <= y; ++next)
+      begin_face(edge_table[next], active);
+    work.spans.reserve(active.now.size());
     for (int s = 0; s < pattern.samples; ++s) {
       std::uint32_t* id_row = id.row(s, y - rect.y0);
       R* z_row = z.row(s, y - rect.y0);
@@ -386,7 +405,7 @@ void Scanner<R>::fill(PixelRect rect, PlaneView<std::uint32_t> id, PlaneView<R> 
         find_spans(active, line, work);
         if (watch.counts != nullptr) {
           ++watch.counts->lines;
-          watch.counts->edges += 3 * active.size();
+          watch.counts->edges += 3 * active.now.size();
           watch.counts->spans += work.spans.size();
         }
         sweep(work, line, watch);
