@@ -8,14 +8,12 @@
 #include "runtime/io/mesh_readers.h"
 #include "runtime/io/mesh_writers.h"
 #include "runtime/io/vertex_split.h"
-#include "tests/support/meshes.h"
 #include "tests/support/temp_file.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -27,7 +25,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::Not;
 
 template <class R>
 Mesh sheet(std::size_t n) {
@@ -128,25 +125,6 @@ TEST_F(Files, PlyGivesEveryColumnBackBitForBit) {
   const Mesh wide = sheet<double>(9);
   const Mesh wide_again = read(save(buffer(wide), "w.ply").path, Precision::real_double);
   for (const auto& c : wide.columns) EXPECT_TRUE(same(*c, wide_again.at(c->name()))) << c->name();
-}
-
-// Processors and libraries differ in the sign that a NaN has, and not all readers know "-nan".
-TEST_F(Files, ObjNamesNumbersThatAreNoneWithoutASign) {
-  const float nan = std::numeric_limits<float>::quiet_NaN(),
-              infinity = std::numeric_limits<float>::infinity();
-  Mesh m = test::mesh_of<glm::vec3>({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, Space::world);
-  const std::vector<glm::vec3> normal{glm::vec3(std::copysign(nan, -1.0F), 0, 1), glm::vec3(nan, infinity, 1),
-                                      glm::vec3(0, -infinity, 1)};
-  m.columns.push_back(Column::make<glm::vec3>("normal", Domain::vertex, normal, Space::world));
-  m.columns.push_back(Column::make<glm::vec3>("color", Domain::vertex, normal));
-  const std::string text = text_of(save(buffer(m), "m.obj").path);
-  EXPECT_THAT(text, HasSubstr("vn nan 0 1\nvn nan inf 1\nvn 0 -inf 1\n"));
-  EXPECT_THAT(text, HasSubstr("v 0 0 0 nan 0 1\n"));
-  EXPECT_THAT(text, Not(HasSubstr("-nan")));
-  const std::vector<glm::vec3> lost{glm::vec3(std::copysign(nan, -1.0F), 0, -infinity), glm::vec3(1, 0, 0),
-                                    glm::vec3(0, 1, 0)};
-  const Mesh no_place = test::mesh_of(lost, {{0, 1, 2}}, Space::world);
-  EXPECT_THAT(problem(buffer(no_place), "n.obj").second, HasSubstr("vertex 0 is at (nan, 0, -inf)"));
 }
 
 TEST_F(Files, ObjGivesPositionsCoordinatesAndNormalsBackBitForBit) {
