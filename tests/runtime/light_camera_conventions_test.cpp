@@ -6,21 +6,14 @@
 namespace frustum {
 namespace {
 
-// A tilted plate over a floor, seen from above; both turned, so that corners fall between the points of any grid.
-Raster shadow_of(std::string_view at_sun) {
+// What of the sun reaches a scene, through its light's camera.
+//   scene   the nodes "scene", "camera" and "sun"
+//   at_sun  parameters of the light's camera
+//   shadow  parameters of the shadow
+Raster shadow_in(std::string_view scene, std::string_view at_sun, std::string_view shadow) {
   const test::TempFolder folder;
   return test::run_in_session(folder,
-                              fmt::format(R"({{ "format": "frustum.graph/1", "nodes": {{
-    "floor":  {{ "type": "mesh.grid", "params": {{ "size": [8, 8], "segments": [3, 3] }} }},
-    "plate":  {{ "type": "mesh.grid", "params": {{ "size": [2.1, 1.7] }} }},
-    "raised": {{ "type": "transform.affine", "in": {{ "geometry": "plate" }},
-                "params": {{ "steps": [ {{ "rotate": {{ "axis": [1, 0, 2], "degrees": 31 }} }},
-                                       {{ "translate": [0.2, 1.9, -0.1] }} ] }} }},
-    "both":   {{ "type": "mesh.merge", "in": {{ "meshes": ["floor", "raised"] }} }},
-    "scene":  {{ "type": "transform.affine", "in": {{ "geometry": "both" }},
-                "params": {{ "steps": [ {{ "rotate": {{ "axis": [0.1, 1, 0.05], "degrees": 17 }} }} ] }} }},
-    "camera": {{ "type": "scene.camera", "params": {{ "eye": [1, 9, 4], "resolution": [160, 120] }} }},
-    "sun":    {{ "type": "light.directional", "params": {{ "direction": [-0.7, -1, 0.3] }} }},
+                              fmt::format(R"({{ "format": "frustum.graph/1", "nodes": {{ {},
     "at_sun": {{ "type": "light.camera", "in": {{ "light": "sun", "mesh": "scene" }}, "params": {{ {} }} }},
     "map":    {{ "type": "graph", "file": "lib:shadow_map_parallel",
                 "in": {{ "mesh": "scene", "camera": "at_sun" }} }},
@@ -31,10 +24,26 @@ Raster shadow_of(std::string_view at_sun) {
     "hits":   {{ "type": "rasterize.triangles", "in": {{ "mesh": "screen" }} }},
     "points": {{ "type": "rasterize.attributes", "in": {{ "hits": "hits", "mesh": "screen" }} }},
     "shadow": {{ "type": "shade.shadow_map", "in": {{ "points": "points", "mesh": "screen", "lights": ["sun"],
-                "maps": ["map"], "cameras": ["at_sun"] }} }} }} }})",
-                                          at_sun),
+                "maps": ["map"], "cameras": ["at_sun"] }}, "params": {{ {} }} }} }} }})",
+                                          scene, at_sun, shadow),
                               {"shadow"})
       .image();
+}
+
+// A tilted plate over a floor, seen from above; both turned, so that corners fall between the points of any grid.
+Raster shadow_of(std::string_view at_sun) {
+  return shadow_in(R"(
+    "floor":  { "type": "mesh.grid", "params": { "size": [8, 8], "segments": [3, 3] } },
+    "plate":  { "type": "mesh.grid", "params": { "size": [2.1, 1.7] } },
+    "raised": { "type": "transform.affine", "in": { "geometry": "plate" },
+                "params": { "steps": [ { "rotate": { "axis": [1, 0, 2], "degrees": 31 } },
+                                       { "translate": [0.2, 1.9, -0.1] } ] } },
+    "both":   { "type": "mesh.merge", "in": { "meshes": ["floor", "raised"] } },
+    "scene":  { "type": "transform.affine", "in": { "geometry": "both" },
+                "params": { "steps": [ { "rotate": { "axis": [0.1, 1, 0.05], "degrees": 17 } } ] } },
+    "camera": { "type": "scene.camera", "params": { "eye": [1, 9, 4], "resolution": [160, 120] } },
+    "sun":    { "type": "light.directional", "params": { "direction": [-0.7, -1, 0.3] } })",
+                   at_sun, "");
 }
 
 struct Lit {
@@ -76,30 +85,14 @@ TEST(LightCameraConventions, OnACoarseGridPlanesDoNotShadeThemselves) {
 // point is seen in the corner of a texel; snapping moves what the map has there by up to half a step of the grid, 1/32
 // texel of 4 bits. Without slope * step in the tolerance 38 points are dark, and 14 of 5 bits.
 TEST(LightCameraConventions, TheStepOfACoarseGridIsPartOfTheTolerance) {
-  const test::TempFolder folder;
   for (const int bits : {4, 5}) {
-    const Raster seen = test::run_in_session(folder,
-                                             fmt::format(R"({{ "format": "frustum.graph/1", "nodes": {{
-    "grid":   {{ "type": "mesh.grid", "params": {{ "size": [8, 8], "segments": [23, 19] }} }},
-    "scene":  {{ "type": "transform.affine", "in": {{ "geometry": "grid" }},
-                "params": {{ "steps": [ {{ "rotate": {{ "axis": [0.1, 1, 0.05], "degrees": 17 }} }} ] }} }},
-    "camera": {{ "type": "scene.camera", "params": {{ "eye": [0.3, 6, 1], "resolution": [160, 120] }} }},
-    "sun":    {{ "type": "light.directional", "params": {{ "direction": [-2, -1, 0.3] }} }},
-    "at_sun": {{ "type": "light.camera", "in": {{ "light": "sun", "mesh": "scene" }},
-                "params": {{ "size": 64, "subpixel_bits": {} }} }},
-    "map":    {{ "type": "graph", "file": "lib:shadow_map_parallel",
-                "in": {{ "mesh": "scene", "camera": "at_sun" }} }},
-    "eye":    {{ "type": "project.view", "in": {{ "mesh": "scene", "camera": "camera" }} }},
-    "clip":   {{ "type": "project.perspective", "in": {{ "mesh": "eye", "camera": "camera" }} }},
-    "cut":    {{ "type": "clip.homogeneous", "in": {{ "mesh": "clip" }} }},
-    "screen": {{ "type": "project.viewport", "in": {{ "mesh": "cut", "camera": "camera" }} }},
-    "hits":   {{ "type": "rasterize.triangles", "in": {{ "mesh": "screen" }} }},
-    "points": {{ "type": "rasterize.attributes", "in": {{ "hits": "hits", "mesh": "screen" }} }},
-    "shadow": {{ "type": "shade.shadow_map", "in": {{ "points": "points", "mesh": "screen", "lights": ["sun"],
-                "maps": ["map"], "cameras": ["at_sun"] }}, "params": {{ "radius": 0 }} }} }} }})",
-                                                         bits),
-                                             {"shadow"})
-                            .image();
+    const Raster seen = shadow_in(R"(
+    "grid":   { "type": "mesh.grid", "params": { "size": [8, 8], "segments": [23, 19] } },
+    "scene":  { "type": "transform.affine", "in": { "geometry": "grid" },
+                "params": { "steps": [ { "rotate": { "axis": [0.1, 1, 0.05], "degrees": 17 } } ] } },
+    "camera": { "type": "scene.camera", "params": { "eye": [0.3, 6, 1], "resolution": [160, 120] } },
+    "sun":    { "type": "light.directional", "params": { "direction": [-2, -1, 0.3] } })",
+                                  fmt::format(R"("size": 64, "subpixel_bits": {})", bits), R"("radius": 0)");
     const Lit n = compared(seen, seen);
     EXPECT_EQ(n.lit, 160 * 120) << bits;
   }
