@@ -304,9 +304,10 @@ class Runner {
     const GraphNode& node = state_.graph.nodes[n];
     std::vector<PreparedInput> inputs(node.inputs.size());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-      for (const Source& s : node.inputs[i]) inputs[i].buffers.push_back(value(s));
-      if (node.type->inputs[i].tiled && !inputs[i].buffers.empty())
+      if (node.type->inputs[i].tiled && !node.inputs[i].empty())
         inputs[i] = streaming(node.inputs[i].front());
+      else
+        for (const Source& s : node.inputs[i]) inputs[i].buffers.push_back(value(s));
     }
     auto ready = std::make_shared<ReadyNode>();
     const FloatEnvironment environment;
@@ -317,15 +318,16 @@ class Runner {
     return ready;
   }
 
-  // What a tiled input sees at preparation: the frame of the node that will stream, or of pixels that are whole.
+  // What a tiled input sees at preparation: the frame of the node that will stream, or of pixels that were whole before
+  // the run. What this run makes whole is not looked at: a pass may be publishing it.
   PreparedInput streaming(const Source& source) const {
     PreparedInput in;
-    const Buffer whole = value(source);
-    if (whole) {
-      in.tiled.frame = std::make_shared<const Frame>(whole.type().raster(whole.data()).frame());
+    const auto* from = std::get_if<PortRef>(&source);
+    if (from != nullptr && state_.graph.nodes[from->node].type->is_pixel() && is_wanted(*from)) {
+      in.tiled.frame = state_.frame(*from);
     } else {
-      const PortRef from = std::get<PortRef>(source);
-      in.tiled.frame = state_.ready(from.node)->node.frames[from.port];
+      const Buffer whole = value(source);
+      in.tiled.frame = std::make_shared<const Frame>(whole.type().raster(whole.data()).frame());
     }
     in.tiled.planes_read = std::make_shared<std::vector<bool>>(in.tiled.frame->planes.size(), false);
     return in;

@@ -405,9 +405,11 @@ class Pass {
     for (std::size_t i = 0; i < pass_.roots.size(); ++i) {
       const PortRef port = pass_.roots[i].port;
       const bool complete = whole_[i]->frame().window == frame(roots_[i]).window;
+      // In a run of a region nodes stream what is only demanded, and may be looking at it now.
+      const bool for_nodes = pass_.roots[i].why != Whole::demanded || !state_.options.region;
       const Buffer b = graph_.port(port).types.front()->from_raster(*whole_[i]);
       if (complete) state_.caches.keep(port, b);
-      if (complete)
+      if (for_nodes)
         state_.publish(port, b);
       else
         state_.publish_part(port, b);

@@ -42,7 +42,12 @@ Diagnostic not_finite(const Culprit& c, const SourcePlace& place) {
 }  // namespace
 
 RunState::RunState(const Graph& g, const RunOptions& o)
-    : graph(g), options(o), caches(g, options), ready_(g.nodes.size()), ready_uses_(g.nodes.size()) {
+    : graph(g),
+      options(o),
+      caches(g, options),
+      ready_(g.nodes.size()),
+      frames_(g.nodes.size()),
+      ready_uses_(g.nodes.size()) {
   buffers_.reserve(g.nodes.size());
   uses_.reserve(g.nodes.size());
   for (const GraphNode& n : g.nodes) {

@@ -35,13 +35,16 @@ class RunState {
     return buffers_[p.node][p.port];
   }  // empty where not there (yet, or any more)
   void publish(PortRef p, Buffer b);
-  // Only for the caller: a part of the port's pixels, which no node may read as if it were all.
+  // Only for the caller: the pixels of the region, which no node reads, nor looks whether they are there.
   void publish_part(PortRef p, Buffer b);
   std::shared_ptr<const ReadyNode> ready(std::size_t node) const { return ready_[node]; }
   void set_ready(std::size_t node, std::shared_ptr<const ReadyNode> r) {
     ledger.add_bytes(r->bytes);
+    frames_[node] = r->node.frames;
     ready_[node] = std::move(r);
   }
+  // Of a prepared node, to the end of the run: its readers may be prepared when its pass is long over.
+  const std::shared_ptr<const Frame>& frame(PortRef p) const { return frames_[p.node][p.port]; }
 
   // A step that had announced to use the port is over; after the last one the buffer is freed.
   void announce_use(PortRef p) { ++uses_[p.node][p.port]; }
@@ -82,6 +85,7 @@ class RunState {
   std::vector<std::vector<Buffer>> buffers_;
   std::map<PortRef, Buffer> parts_;
   std::vector<std::shared_ptr<const ReadyNode>> ready_;
+  std::vector<std::vector<std::shared_ptr<const Frame>>> frames_;
   std::vector<std::vector<std::atomic<int>>> uses_;
   std::vector<std::atomic<int>> ready_uses_;
 
