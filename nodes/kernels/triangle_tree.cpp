@@ -1,4 +1,4 @@
-#include "nodes/kernels/occluders.h"
+#include "nodes/kernels/triangle_tree.h"
 
 #include "nodes/kernels/surface_measures.h"
 #include "nodes/kernels/vector.h"
@@ -33,7 +33,7 @@ constexpr std::size_t parallel_size = 4096;
 
 // Binned surface area heuristic. Source: Wald 2007, On fast construction of SAH-based bounding volume
 // hierarchies, doi:10.1109/RT.2007.4342588.
-struct Occluders::Builder {
+struct TriangleTree::Builder {
   struct Item {
     Box box;
     std::uint32_t triangle;
@@ -110,8 +110,8 @@ struct Occluders::Builder {
   }
 };
 
-Occluders::Occluders(std::span<const glm::dvec3> position, std::span<const glm::uvec3> triangle,
-                     const std::function<void()>& poll) {
+TriangleTree::TriangleTree(std::span<const glm::dvec3> position, std::span<const glm::uvec3> triangle,
+                           const std::function<void()>& poll) {
   const Triangles<double> mesh{position, triangle};
   Builder builder{{}, nodes_, poll};
   builder.items.reserve(triangle.size());
@@ -127,12 +127,12 @@ Occluders::Occluders(std::span<const glm::dvec3> position, std::span<const glm::
   triangles_.reserve(builder.items.size());
   for (const auto& item : builder.items) {
     const auto [a, b, c] = mesh.corners(item.triangle);
-    triangles_.push_back({a, b, c, normalized_or(cross(b - a, c - a), glm::dvec3(0))});
+    triangles_.push_back({a, b, c, normalized_or(cross(b - a, c - a), glm::dvec3(0)), item.triangle});
   }
 }
 
 // The way along one axis, so that the triangle is met where it covers the origin of the other two.
-struct Occluders::Shear {
+struct TriangleTree::Shear {
   explicit Shear(const glm::dvec3& way) {
     const glm::dvec3 size(std::fabs(way.x), std::fabs(way.y), std::fabs(way.z));
     z = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -144,7 +144,7 @@ struct Occluders::Shear {
   double by_x, by_y;
 };
 
-bool Occluders::crosses(const Triangle& t, const Sight& sight, const Shear& shear, double slack) {
+bool TriangleTree::crosses(const Triangle& t, const Sight& sight, const Shear& shear, double slack) {
   const glm::dvec3 a = t.a - sight.from;
   const double height = -dot(t.normal, a), change = dot(t.normal, sight.way);
   if (!(std::fabs(height) > slack)) return false;
@@ -156,58 +156,135 @@ bool Occluders::crosses(const Triangle& t, const Sight& sight, const Shear& shea
   return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
 }
 
-bool Occluders::hide(const Sight& sight, double slack, std::uint32_t& last) const {
-  if (nodes_.empty() || !std::isfinite(largest_component(sight.from)) ||
-      !(largest_component(sight.way) > 0) || !std::isfinite(largest_component(sight.way)))
-    return false;
-  const Shear shear(sight.way);
-  if (last < triangles_.size() && crosses(triangles_[last], sight, shear, slack)) return true;
+// The way of a ray through boxes.
+struct TriangleTree::Slabs {
+  glm::dvec3 from, inverse;
+
   // 1 / 0 times 0 would be NaN; 2^-1000 stands for 0, and 2^1000 times any length in the scene is far beyond it.
-  glm::dvec3 inverse;
-  for (glm::length_t k = 0; k < 3; ++k)
-    inverse[k] = 1 / (std::fabs(sight.way[k]) > 0x1p-1000 ? sight.way[k] : 0x1p-1000);
-  // Three roundings each of the ends of a box's interval: widened so that none is missed.
-  constexpr double wider = 1 + 8 * 0x1p-53;
-  const double end = sight.ends ? 1 : std::numeric_limits<double>::infinity();
-  const auto meets = [&](const Node& n) {
-    double near = 0, far = end;
-    for (glm::length_t k = 0; k < 3; ++k) {
-      const double s = (static_cast<double>(n.low[k]) - sight.from[k]) * inverse[k],
-                   t = (static_cast<double>(n.high[k]) - sight.from[k]) * inverse[k];
-      near = std::max(near, std::min(s, t)), far = std::min(far, std::max(s, t) * wider);
-    }
-    return near <= far;
+  Slabs(const glm::dvec3& start, const glm::dvec3& along) : from(start) {
+    for (glm::length_t k = 0; k < 3; ++k)
+      inverse[k] = 1 / (std::fabs(along[k]) > 0x1p-1000 ? along[k] : 0x1p-1000);
+  }
+
+  struct Interval {
+    double near, far;
   };
-  // A tree by areas may be as deep as it has triangles, but each level of the stack holds one right child.
-  std::array<std::uint32_t, 64> stack;
-  std::vector<std::uint32_t> overflow;
+  // Where the ray is in the box, t >= 0. The near end grows with the box's near sides, roundings included: no box begins
+  // before one that holds it.
+  template <class Corner>
+  Interval within(const Corner& low, const Corner& high) const {
+    // Three roundings each of the ends: widened so that no box is missed.
+    constexpr double wider = 1 + 8 * 0x1p-53;
+    Interval in{0, std::numeric_limits<double>::max()};
+    for (glm::length_t k = 0; k < 3; ++k) {
+      const double s = (static_cast<double>(low[k]) - from[k]) * inverse[k],
+                   t = (static_cast<double>(high[k]) - from[k]) * inverse[k];
+      in.near = std::max(in.near, std::min(s, t)), in.far = std::min(in.far, std::max(s, t) * wider);
+    }
+    return in;
+  }
+};
+
+// Calls visit(triangle) for those in boxes that are entered no later than `end`, which visit may lessen; nearer boxes
+// first. A visit that returns true is the last.
+template <class Visit>
+void TriangleTree::walk(const Slabs& slabs, const double& end, const Visit& visit) const {
+  struct Waiting {
+    std::uint32_t node;
+    double enter;
+  };
+  constexpr double never = std::numeric_limits<double>::infinity();
+  const auto enter = [&](std::uint32_t n) {
+    const auto in = slabs.within(nodes_[n].low, nodes_[n].high);
+    return in.near <= in.far ? in.near : never;
+  };
+  // A tree by areas may be as deep as it has triangles, but each level of the stack holds one child.
+  std::array<Waiting, 64> stack;
+  std::vector<Waiting> overflow;
   std::size_t top = 0;
-  std::uint32_t node = 0;
+  Waiting at{0, enter(0)};
   while (true) {
-    const Node& n = nodes_[node];
-    if (meets(n)) {
+    if (at.enter < never && at.enter <= end) {
+      const Node& n = nodes_[at.node];
       if (n.count == 0) {
-        if (top < stack.size())
-          stack[top++] = n.first;
-        else
-          overflow.push_back(n.first);
-        ++node;
+        Waiting near{at.node + 1, enter(at.node + 1)}, far{n.first, enter(n.first)};
+        if (far.enter < near.enter) std::swap(near, far);
+        if (far.enter <= end) {
+          if (top < stack.size())
+            stack[top++] = far;
+          else
+            overflow.push_back(far);
+        }
+        at = near;
         continue;
       }
       for (std::uint32_t i = n.first; i < n.first + n.count; ++i)
-        if (crosses(triangles_[i], sight, shear, slack)) {
-          last = i;
-          return true;
-        }
+        if (visit(i)) return;
     }
     if (!overflow.empty()) {
-      node = overflow.back(), overflow.pop_back();
+      at = overflow.back(), overflow.pop_back();
     } else if (top > 0) {
-      node = stack[--top];
+      at = stack[--top];
     } else {
-      return false;
+      return;
     }
   }
+}
+
+namespace {
+
+bool leads_somewhere(const glm::dvec3& from, const glm::dvec3& along) {
+  return std::isfinite(largest_component(from)) && largest_component(along) > 0 &&
+         std::isfinite(largest_component(along));
+}
+
+}  // namespace
+
+bool TriangleTree::hide(const Sight& sight, double slack, std::uint32_t& last) const {
+  if (nodes_.empty() || !leads_somewhere(sight.from, sight.way)) return false;
+  const Shear shear(sight.way);
+  if (last < triangles_.size() && crosses(triangles_[last], sight, shear, slack)) return true;
+  const double end = sight.ends ? 1 : std::numeric_limits<double>::max();
+  bool hidden = false;
+  walk(Slabs(sight.from, sight.way), end, [&](std::uint32_t i) {
+    hidden = crosses(triangles_[i], sight, shear, slack);
+    if (hidden) last = i;
+    return hidden;
+  });
+  return hidden;
+}
+
+void TriangleTree::meet(const Triangle& t, const Ray& ray, const Shear& shear, const Slabs& slabs,
+                        RayHit& nearest) {
+  const glm::dvec3 a = t.a - ray.from, b = t.b - ray.from, c = t.c - ray.from;
+  const glm::dvec2 p = shear(a), q = shear(b), r = shear(c);
+  const double u = r.x * q.y - r.y * q.x, v = p.x * r.y - p.y * r.x, w = q.x * p.y - q.y * p.x;
+  if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))) return;
+  if (!(std::fabs(dot(t.normal, a)) > ray.slack)) return;
+  const double sum = (u + v) + w;
+  if (sum == 0) return;
+  const double of_a = u / sum, of_b = v / sum, of_c = w / sum;
+  const double mean = ((of_a * a[shear.z] + of_b * b[shear.z]) + of_c * c[shear.z]) / ray.along[shear.z];
+  if (!(mean > 0)) return;
+  const glm::dvec3 low = glm::dvec3(std::min({t.a.x, t.b.x, t.c.x}), std::min({t.a.y, t.b.y, t.c.y}),
+                                    std::min({t.a.z, t.b.z, t.c.z})),
+                   high = glm::dvec3(std::max({t.a.x, t.b.x, t.c.x}), std::max({t.a.y, t.b.y, t.c.y}),
+                                     std::max({t.a.z, t.b.z, t.c.z}));
+  const double distance = std::max(mean, slabs.within(low, high).near);
+  if (distance < nearest.t || (distance == nearest.t && t.face < nearest.face))
+    nearest = {t.face, distance, of_b, of_c};
+}
+
+RayHit TriangleTree::nearest(const Ray& ray) const {
+  RayHit found;
+  if (nodes_.empty() || !leads_somewhere(ray.from, ray.along)) return found;
+  const Shear shear(ray.along);
+  const Slabs slabs(ray.from, ray.along);
+  walk(slabs, found.t, [&](std::uint32_t i) {
+    meet(triangles_[i], ray, shear, slabs, found);
+    return false;
+  });
+  return found;
 }
 
 }  // namespace frustum::kernels

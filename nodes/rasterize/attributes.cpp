@@ -10,6 +10,7 @@
 #include "nodes/rasterize.h"
 #include "runtime/buffers/image.h"
 #include "runtime/buffers/mesh.h"
+#include "runtime/buffers/point_columns.h"
 #include "runtime/buffers/screen_view.h"
 #include "runtime/core/node_type.h"
 
@@ -43,77 +44,25 @@ struct Outputs {
   Tiled<Image> points;
 };
 
-// A column and where its planes stand in the frame: `first` is its first value, followed by its other
-// components; then, where it has slopes, those by x and those by y.
-struct Source {
-  Ref<Column> column;
-  AttributeDomain domain;
-  std::size_t width, first;
-  bool slopes;
-  bool constant = false;  // over each face: the first corner's row stands for all
-};
-
 template <class R>
 struct Interpolator {
   Ref<Mesh> mesh;
   Ref<Column> position;
   Ref<SamplePattern> pattern;
   Interpolation interpolation;
-  std::vector<Source> sources;
+  std::vector<PointColumn> sources;
   int hit_id, w;  // planes
 };
 using State = std::variant<Interpolator<float>, Interpolator<double>>;
 
-std::optional<AttributeDomain> domain_of(const Column& c) {
-  if (c.kind() != NumberKind::f32 && c.kind() != NumberKind::f64) return std::nullopt;
-  if (c.domain() == Domain::vertex) return AttributeDomain::vertex;
-  if (c.domain() == Domain::corner) return AttributeDomain::corner;
-  if (c.domain() == Domain::face) return AttributeDomain::face;
-  return std::nullopt;
-}
-
-bool is_uv(const Column& c) { return is_uv_column(c.name()) && c.width() == 2; }
-
-// World positions have slopes, too: how much of space a pixel sees.
-bool has_slopes(const Column& c) { return is_uv(c) || (c.name() == "world" && c.width() == 3); }
-
-std::vector<std::string> slope_names(const Column& c) {
-  const std::string prefix = is_uv(c) ? c.name() : "P";
-  std::vector<std::string> names;
-  for (const char* along : {"_dx", "_dy"})
-    for (const char* of : is_uv(c) ? std::vector{"du", "dv"} : std::vector{"dx", "dy", "dz"})
-      names.push_back(prefix + "." + of + along);
-  return names;
-}
-
-// The names of a column's value planes (runtime/buffers/image.h).
-std::vector<std::string> value_names(const Column& c) {
-  if (is_uv(c)) return {c.name() + ".u", c.name() + ".v"};
-  if (c.width() == 1) return {c.name()};
-  const std::string prefix = c.name() == "normal" ? "N" : c.name() == "world" ? "P" : c.name();
-  std::vector<std::string> names;
-  for (int i = 0; i < c.width(); ++i) names.push_back(prefix + "." + "xyzw"[i]);
-  return names;
-}
-
-kernels::SamplePositions positions_of(const SamplePattern* pattern) {
-  if (pattern == nullptr) return kernels::centre_sample();
-  return {pattern->samples, pattern->period, pattern->x, pattern->y};
-}
-
 // Adds the planes of every column that has a place on the screen.
 template <class R>
-std::vector<Source> add_planes(const Mesh& mesh, bool interpolates_normals, PlaneList& planes) {
-  std::vector<Source> sources;
+std::vector<PointColumn> add_planes(const Mesh& mesh, bool interpolates_normals, PlaneList& planes) {
+  std::vector<PointColumn> sources;
   for (const Ref<Column>& c : mesh.columns) {
-    const auto domain = domain_of(*c);
-    if (!domain || c->name() == "position") continue;
-    const bool slopes = has_slopes(*c);
-    sources.push_back({as_real<R>(c), *domain, static_cast<std::size_t>(c->width()), planes.size(), slopes,
-                       !interpolates_normals && c->name() == "normal"});
-    for (const std::string& name : value_names(*c)) planes.push_back({name, plane_kind_of<R>});
-    if (!slopes) continue;
-    for (const std::string& name : slope_names(*c)) planes.push_back({name, plane_kind_of<R>});
+    if (!domain_of(*c) || c->name() == "position") continue;
+    sources.push_back(PointColumn::add<R>(c, has_slopes(*c), planes));
+    sources.back().constant = !interpolates_normals && c->name() == "normal";
   }
   return sources;
 }
@@ -186,7 +135,7 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   const Frame& hits = in.hits.frame();
   return ctx.real([&]<class R>() -> Prepared<State, Outputs> {
     Frame points{hits.window, hits.pattern, {{"id", PlaneKind::u32}}};
-    std::vector<Source> sources = add_planes<R>(*in.mesh, ctx.simulates(normals_name), points.planes);
+    std::vector<PointColumn> sources = add_planes<R>(*in.mesh, ctx.simulates(normals_name), points.planes);
     const int w = static_cast<int>(points.planes.size());
     points.planes.push_back({"w", plane_kind_of<R>});
     Interpolator<R> state{in.mesh,
@@ -198,29 +147,6 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
                           w};
     return {std::move(state), {std::move(points)}};
   });
-}
-
-template <class T>
-PlaneView<T> view(const Tile& tile, std::size_t plane) {
-  const int i = static_cast<int>(plane);
-  if (!tile.has(i)) return {};
-  return {tile.row<T>(i, 0, tile.rect().y0), tile.row_stride(), tile.sample_stride()};
-}
-
-// What of a column is read by somebody.
-template <class R>
-std::optional<Attribute<R>> wanted(const Source& s, const Tile& to) {
-  Attribute<R> a{static_cast<const R*>(s.column->data()), static_cast<int>(s.width), s.domain};
-  bool any = false;
-  for (std::size_t i = 0; i < s.width; ++i) {
-    a.value[i] = view<R>(to, s.first + i);
-    if (s.slopes) {
-      a.dx[i] = view<R>(to, s.first + s.width + i);
-      a.dy[i] = view<R>(to, s.first + 2 * s.width + i);
-    }
-    any = any || a.value[i].data != nullptr || a.dx[i].data != nullptr || a.dy[i].data != nullptr;
-  }
-  return any ? std::optional(a) : std::nullopt;
 }
 
 // Copies the ids of one row, if somebody reads them, and throws where they are of another mesh.
@@ -246,7 +172,7 @@ void check_and_copy(const std::uint32_t* from, int count, std::uint32_t faces, s
 template <class R>
 void fill(const Interpolator<R>& s, const Tile& from, const Tile& to) {
   const Rect& r = to.rect();
-  const auto ids = view<const std::uint32_t>(from, static_cast<std::size_t>(s.hit_id));
+  const auto ids = plane_view<const std::uint32_t>(from, static_cast<std::size_t>(s.hit_id));
   const auto faces = static_cast<std::uint32_t>(s.mesh->faces());
   for (int sample = 0; sample < to.samples(); ++sample)
     for (int y = r.y0; y < r.y1; ++y)
@@ -256,18 +182,18 @@ void fill(const Interpolator<R>& s, const Tile& from, const Tile& to) {
   const kernels::ScreenMesh<R> screen{
       s.position->template values<glm::vec<4, R>>(), s.mesh->triangles(), {}, corner_bits_of(*s.mesh)};
   std::vector<Attribute<R>> attributes;
-  for (const Source& source : s.sources) {
-    const auto a = wanted<R>(source, to);
+  for (const PointColumn& source : s.sources) {
+    const auto a = wanted_planes<R>(source, to);
     if (!a) continue;
     if (source.constant)
       copy_attribute<R>(screen, {r.x0, r.y0, r.x1, r.y1}, to.samples(), ids, *a);
     else
       attributes.push_back(*a);
   }
-  const PlaneView<R> w = view<R>(to, static_cast<std::size_t>(s.w));
+  const PlaneView<R> w = plane_view<R>(to, static_cast<std::size_t>(s.w));
   if (attributes.empty() && w.data == nullptr) return;
-  attributes_at<R>({screen, positions_of(s.pattern.get()), s.interpolation}, {r.x0, r.y0, r.x1, r.y1}, ids,
-                   {attributes, w});
+  attributes_at<R>({screen, sample_positions(s.pattern.get()), s.interpolation}, {r.x0, r.y0, r.x1, r.y1},
+                   ids, {attributes, w});
 }
 
 void tile(const State& state, const TilesOf<Inputs>& in, const TilesOf<Outputs>& out, Arena&) {

@@ -24,7 +24,7 @@ struct Outputs {
 using Source = kernels::LightSource<double>;
 
 struct State {
-  kernels::Occluders occluders;
+  kernels::TriangleTree occluders;
   std::vector<Source> sources;  // by plane
   SeenPoints points;
 };
@@ -70,7 +70,7 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params&, Context& ctx) 
   State s{
       .occluders = {}, .sources = choose(in, ctx, frame.planes), .points = read_points(in.points, in.mesh)};
   if (!s.sources.empty()) {
-    ctx.claim(kernels::Occluders::bytes(in.casters->faces()));
+    ctx.claim(kernels::TriangleTree::bytes(in.casters->faces()));
     const Ref<Column> at = caster_positions(*in.casters);
     s.occluders = {at->values<glm::dvec3>(), in.casters->triangles(), [&ctx] { ctx.poll(); }};
   }

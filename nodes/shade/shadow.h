@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nodes/kernels/lighting.h"
-#include "nodes/kernels/occluders.h"
+#include "nodes/kernels/triangle_tree.h"
 
 namespace frustum::shadow {
 

@@ -8,7 +8,11 @@ Rect picture_window(const Mesh& mesh) {
   if (!mesh.camera)
     throw NodeError("no_camera", "the mesh has passed no projection, so its picture has no resolution",
                     at_input("mesh"));
-  const glm::ivec2 size = mesh.camera->resolution;
+  return picture_window(*mesh.camera);
+}
+
+Rect picture_window(const Camera& camera) {
+  const glm::ivec2 size = camera.resolution;
   constexpr int limit = 65536;
   if (size.x > limit || size.y > limit)
     throw NodeError("too_large", fmt::format("the picture is {} x {} pixels; at most {} x {} can be drawn",

@@ -11,6 +11,8 @@ namespace frustum {
 // The picture of the mesh's camera. Throws NodeError("no_camera") for a mesh that has passed no projection, and
 // NodeError("too_large") above 65536 px.
 Rect picture_window(const Mesh& mesh);
+// The picture of a camera. Throws NodeError("too_large").
+Rect picture_window(const Camera& camera);
 
 inline kernels::PixelRect pixel_rect(Rect r) { return {r.x0, r.y0, r.x1, r.y1}; }
 

@@ -96,7 +96,8 @@ std::vector<kernels::LightSource<R>> sources_of(std::span<const Ref<LightSet>> l
 
 template <std::floating_point R>
 Ref<Column> world_positions(const Mesh& mesh) {
-  const bool own = mesh.find("world") == nullptr && mesh.space() == Space::world;
+  const bool placed = mesh.space() == Space::world || mesh.space() == Space::object;
+  const bool own = mesh.find("world") == nullptr && placed;
   if (!own && mesh.find("world") == nullptr)
     throw NodeError("missing_column", "the mesh has no world positions: it has not passed project.view",
                     at_input("mesh"));

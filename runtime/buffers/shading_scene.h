@@ -18,8 +18,8 @@ kernels::Triple<R> eye_of(const Camera& camera) {
   return {static_cast<R>(camera.eye.x), static_cast<R>(camera.eye.y), static_cast<R>(camera.eye.z)};
 }
 
-// World positions of the mesh's vertices, three of R each: kept from project.view on, or its own before it. Throws
-// NodeError("missing_column") or NodeError("wrong_column").
+// World positions of the mesh's vertices, three of R each: kept from project.view on, or its own before it; what was never
+// placed in the world stands where it is. Throws NodeError("missing_column") or NodeError("wrong_column").
 template <std::floating_point R>
 Ref<Column> world_positions(const Mesh&);
 
