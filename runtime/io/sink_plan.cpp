@@ -119,6 +119,7 @@ void plan_color(const SinkRequest& r, const Format& f, int bits, SinkPlan& plan)
     add(plane);
   }
   if (f.alpha && frame.find("A")) plan.alpha = 3, add("A");
+  if (!f.alpha) plan.lost_alpha = frame.find("A").value_or(-1);
   plan.straighten = f.name == "png" && plan.alpha >= 0 && frame.alpha == Alpha::premultiplied;
 }
 

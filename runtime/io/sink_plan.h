@@ -20,6 +20,7 @@ struct SinkPlan {
   std::string format;  // "png", "exr", "tiff", "jpeg", "hdr"
   std::vector<SinkChannel> channels;
   int alpha = -1;           // the channel that is alpha, or -1
+  int lost_alpha = -1;      // the plane of alpha for which the format has no channel, or -1
   bool straighten = false;  // premultiplied colours are divided by alpha
   bool windows = false;     // the format knows data and display windows
   std::string compression;  // empty: the format's usual one

@@ -159,6 +159,30 @@ TEST(ImageFiles, PngStoresStraightAlphaAndGivesItBackPremultiplied) {
   EXPECT_EQ(round_trip("a.jpg", r).raster.frame().planes, rgb) << "no alpha there";
 }
 
+TEST(ImageFiles, PixelsThatAreSeeThroughAreToldWhereAFormatHasNoAlpha) {
+  const Raster r(Frame{.window = {0, 0, 2, 12}, .planes = rgba, .alpha = Alpha::premultiplied});
+  const auto said = [&](const std::string& name) {
+    const test::TempFolder folder;
+    std::string all;
+    SinkRequest to = request(folder.file(name), {{"", r}});
+    to.warn = [&](std::string_view code, const std::string& message) {
+      all += std::string(code) + ": " + message;
+    };
+    write(to, {{"", r}});
+    return all;
+  };
+  for (int y = 0; y < 12; ++y) r.view().row<float>(3, 0, y)[0] = 1;
+  EXPECT_EQ(
+      said("a.jpg"),
+      "left_out: jpeg has no place for alpha: 12 of 24 pixels are see-through, and lie over black there");
+  EXPECT_EQ(
+      said("a.hdr"),
+      "left_out: hdr has no place for alpha: 12 of 24 pixels are see-through, and lie over black there");
+  EXPECT_EQ(said("a.png"), "");
+  for (int y = 0; y < 12; ++y) r.view().row<float>(3, 0, y)[1] = 1;
+  EXPECT_EQ(said("a.jpg"), "") << "it is opaque";
+}
+
 TEST(ImageFiles, ColourSpacesComeBack) {
   EXPECT_EQ(round_trip("a.png", ramp({0, 0, 4, 4}, rgb, Alpha::none, "srgb")).raster.frame().color_space,
             "srgb");

@@ -162,6 +162,7 @@ class FileSink : public Sink {
       : plan_(plan),
         region_(request.region),
         path_(request.path),
+        warn_(request.warn),
         file_(request.path),
         stream_(request.path, file_),
         out_(lib::ImageOutput::create(plan.format == "exr" ? "openexr" : plan.format)) {
@@ -191,6 +192,7 @@ class FileSink : public Sink {
     data_.resize(row_bytes_ * static_cast<std::size_t>(band.height()));
     tbb::parallel_for(band.y0, band.y1, [&](int y) { fill_row(layers, y); });
     next_row_ = band.y1;
+    if (plan_.lost_alpha >= 0) count_see_through(layers[0]);
     guarded([&] {
       return out_->write_scanlines(band.y0 + y_offset_, band.y1 + y_offset_, 0, native_, data_.data());
     });
@@ -200,6 +202,11 @@ class FileSink : public Sink {
     guarded([&] { return out_->close(); });
     finished_ = true;
     file_.commit();
+    if (see_through_ > 0 && warn_)
+      warn_(
+          "left_out",
+          fmt::format("{} has no place for alpha: {} of {} pixels are see-through, and lie over black there",
+                      plan_.format, see_through_, region_.area()));
   }
 
  private:
@@ -233,6 +240,19 @@ class FileSink : public Sink {
     }
     if (!done) fail(out_->geterror());
     file_.check();
+  }
+
+  void count_see_through(const Tile& t) {
+    const auto count = [&]<class T>(T) {
+      for (int y = t.rect().y0; y < t.rect().y1; ++y) {
+        const T* alpha = t.row<const T>(plan_.lost_alpha, 0, y);
+        see_through_ += std::count_if(alpha, alpha + t.rect().width(), [](T a) { return a != 1; });
+      }
+    };
+    if (t.frame().planes[static_cast<std::size_t>(plan_.lost_alpha)].kind == PlaneKind::f64)
+      count(double{});
+    else
+      count(float{});
   }
 
   void fill_row(std::span<const Tile> layers, int y) {
@@ -280,6 +300,8 @@ class FileSink : public Sink {
   SinkPlan plan_;
   Rect region_;
   std::string path_;
+  std::function<void(std::string_view code, const std::string& message)> warn_;
+  std::ptrdiff_t see_through_ = 0;  // pixels so far
   PartialFile file_;
   Stream stream_;
   std::unique_ptr<lib::ImageOutput> out_;
