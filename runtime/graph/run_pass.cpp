@@ -24,14 +24,22 @@ void warn_of_output(RunState& state, const GraphOutput& output, std::string code
                 output.layers.front().from.node);
 }
 
-// A buffer goes to its file whole.
+NodeError empty_region(const GraphOutput& output) {
+  return {"empty_region", fmt::format("output '{}' has no pixels in the region", output.name)};
+}
+
+// A buffer goes to its file whole, or of pixels the region asked for.
 void save_output(RunState& state, const GraphOutput& output) {
   SaveRequest request{.path = output_path(output, state.options), .metadata = state.metadata()};
   request.warn = [&](std::string_view code, const std::string& message) {
     warn_of_output(state, output, std::string(code), fmt::format("output '{}': {}", output.name, message));
   };
   request.admit = [&state](std::uint64_t all) { state.check_memory(all); };
-  state.options.save_buffer(state.buffer(output.layers.front().from), request);
+  const Buffer all = state.buffer(output.layers.front().from),
+               part = cut_to_region(all, state.options.region);
+  if (part.type().is_pixels() && part.type().raster(part.data()).frame().window.empty())
+    throw empty_region(output);
+  state.options.save_buffer(part, request);
 }
 
 // Remembers which output it was that failed: a pass writes several files at once.
@@ -334,7 +342,7 @@ class Pass {
       };
       if (request.region.empty()) {
         state_.output_failed(index);
-        throw NodeError("empty_region", fmt::format("output '{}' has no pixels in the region", output.name));
+        throw empty_region(output);
       }
       sinks_.push_back(std::make_unique<NamedSink>(state_, index, request));
       jobs_[i].sink = sinks_.back().get();

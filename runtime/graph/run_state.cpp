@@ -12,19 +12,6 @@
 namespace frustum {
 namespace {
 
-// A demanded port that a node read whole is there in full; the caller gets the region asked for.
-Buffer cut_to_region(const Buffer& b, const std::optional<Rect>& region) {
-  if (!b || !region || !b.type().is_pixels()) return b;
-  const Raster& all = b.type().raster(b.data());
-  const Rect part = intersection(all.frame().window, *region);
-  if (part == all.frame().window) return b;
-  Frame f = all.frame();
-  f.window = part;
-  const Raster cut(std::move(f));
-  copy(all.view(part), cut.view());
-  return b.type().from_raster(cut);
-}
-
 Diagnostic not_finite(const Culprit& c, const SourcePlace& place) {
   return {.code = "not_finite_result",
           .severity = Severity::warning,
@@ -40,6 +27,18 @@ Diagnostic not_finite(const Culprit& c, const SourcePlace& place) {
 }
 
 }  // namespace
+
+Buffer cut_to_region(const Buffer& b, const std::optional<Rect>& region) {
+  if (!b || !region || !b.type().is_pixels()) return b;
+  const Raster& all = b.type().raster(b.data());
+  const Rect part = intersection(all.frame().window, *region);
+  if (part == all.frame().window) return b;
+  Frame f = all.frame();
+  f.window = part;
+  const Raster cut(std::move(f));
+  copy(all.view(part), cut.view());
+  return b.type().from_raster(cut);
+}
 
 RunState::RunState(const Graph& g, const RunOptions& o)
     : graph(g),

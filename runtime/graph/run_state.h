@@ -96,6 +96,9 @@ class RunState {
   std::set<std::size_t> failed_outputs_;
 };
 
+// Pixels that a node read whole are there in full; who asked for a region gets that of them, which may be empty.
+Buffer cut_to_region(const Buffer&, const std::optional<Rect>& region);
+
 // run_pass.cpp: walks the tiles of one pass of the plan, makes its roots whole and writes its outputs.
 void run_pass(RunState&, std::size_t pass);
 // Only says which planes of the pass nobody reads.

@@ -1,4 +1,5 @@
 // What `run --region` writes: the files say where in the whole picture their pixels lie.
+#include "runtime/io/file_bytes.h"
 #include "runtime/io/image_files.h"
 #include "tests/support/process.h"
 #include "tests/support/temp_file.h"
@@ -6,12 +7,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace frustum {
 namespace {
 
 using testing::IsEmpty;
+
+std::string text_of(const std::string& path) { return std::string(FileBytes({path, path}).text()); }
 
 // The folder's name, after a run of the teapot at 200 x 100 into it.
 std::string teapot(const test::TempFolder& folder, const std::string& name,
@@ -108,6 +112,30 @@ TEST(RegionFiles, ArePicturesOfTheirOwnSize) {
                 << name << " plane " << p << " at " << x << ", " << y;
     }
   }
+}
+
+// Pixels written as a table or as text, which go to their file whole.
+TEST(RegionFiles, OfTextHoldTheRegionToo) {
+  const test::TempFolder folder;
+  const std::string graph = folder.write("g.json", R"({ "format": "frustum.graph/1", "nodes": {
+    "camera": { "type": "scene.camera", "params": { "resolution": [33, 17] } },
+    "rays":   { "type": "trace.camera", "in": { "camera": "camera" } } },
+    "outputs": { "table": { "from": "rays", "file": "rays.csv" }, "text": { "from": "rays", "file": "rays.json" } } })");
+  const auto run = [&](const std::string& region) {
+    return test::frustum({"run", graph, "--out", folder.file("out"), "--region", region});
+  };
+  const auto lines = [&] {
+    const std::string text = text_of(folder.file("out") + "/rays.csv");
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  ASSERT_EQ(run("5,6,4,3").code, 0);
+  EXPECT_EQ(lines(), 1 + 4 * 3);
+  EXPECT_THAT(text_of(folder.file("out") + "/rays.json"), testing::HasSubstr("[5,6,9,9]"));
+  ASSERT_EQ(run("30,-5,40,50").code, 0);
+  EXPECT_EQ(lines(), 1 + 3 * 17);
+  const auto outside = run("100,0,4,4");
+  EXPECT_EQ(outside.code, 2);
+  EXPECT_THAT(outside.err, testing::HasSubstr("error[empty_region]"));
 }
 
 }  // namespace

@@ -145,7 +145,10 @@ TEST(Run, SavesWholeBuffersBesidePictures) {
       ASSERT_EQ(r.end, RunResult::End::done) << to_text(r.problems);
       EXPECT_TRUE(log.finished);
       ASSERT_EQ(saved.size(), 2u);
-      EXPECT_EQ(bytes_of(saved.at("out/sum.json")), run_bytes(g, "sum"));
+      if (region)
+        EXPECT_EQ(saved.at("out/sum.json").as<Image>()->raster.frame().window, *region);
+      else
+        EXPECT_TRUE(bytes_of(saved.at("out/sum.json")) == run_bytes(g, "sum"));
       EXPECT_EQ(saved.at("out/n.csv").type().name, "number");
       EXPECT_EQ(r.files, (std::vector<std::string>{"out/sum.exr", "out/sum.json", "out/n.csv"}));
       ASSERT_EQ(r.problems.size(), 1u);
