@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include <algorithm>
 #include <cerrno>
@@ -48,6 +49,22 @@ LoadOptions load_options(const GraphArguments& args) {
   if (args.precision == "single") options.precision = Precision::single;
   if (args.precision == "double") options.precision = Precision::real_double;
   return options;
+}
+
+void drop_unused(const Graph& graph, std::span<const PortRef> asked, Diagnostics& warnings) {
+  std::vector<bool> feeds(graph.nodes.size(), false);
+  for (const PortRef p : asked) feeds[p.node] = true;
+  for (std::size_t n = graph.nodes.size(); n-- > 0;)  // feeders stand before their consumers
+    for (const auto& sources : graph.nodes[n].inputs)
+      for (const Source& s : sources)
+        if (const auto* from = std::get_if<PortRef>(&s); from != nullptr && feeds[n])
+          feeds[from->node] = true;
+  std::set<std::string> places;
+  for (std::size_t n = 0; n < feeds.size(); ++n)
+    if (feeds[n]) places.insert(graph.nodes[n].place.file + graph.nodes[n].place.pointer);
+  std::erase_if(warnings.list(), [&](const Diagnostic& d) {
+    return d.code == "unused_node" && places.contains(d.file + d.pointer);
+  });
 }
 
 std::optional<Graph> load_or_report(const Session& session, const GraphArguments& args, bool json,

@@ -72,6 +72,9 @@ LoadOptions load_options(const GraphArguments&);  // throws UsageError for a --s
 std::optional<Graph> load_or_report(const Session&, const GraphArguments&, bool json, LoadOptions,
                                     Diagnostics* warnings = nullptr);
 
+// Takes out the warnings that nothing reads a node: those of what feeds the ports that are asked for.
+void drop_unused(const Graph& graph, std::span<const PortRef> asked, Diagnostics& warnings);
+
 // ----- how a run goes
 struct RunArguments {
   int threads = 0;

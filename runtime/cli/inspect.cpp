@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -214,6 +215,7 @@ int inspect(const Arguments& args, bool json) {
   if (!graph) return bad_input;
   const auto port = port_of(*graph, args.port, problems);
   if (!port) return fail(problems, json);
+  drop_unused(*graph, std::array{*port}, warnings);
   if (const auto d = overwriting(*graph, args.save, "--save")) return fail(*d, json);
   const auto& kinds = graph->port(*port).types;
   if (!args.save.empty() && kinds.size() == 1) check_format(*kinds.front(), args);

@@ -162,12 +162,18 @@ bool run_frame(Session& session, const Arguments& args, bool keep, std::optional
   LoadOptions load = load_options(args.graph);
   load.frame = frame;
   Loaded loaded = session.load(args.graph.path, std::move(load));
-  add_new(loaded.problems, o);
-  if (!loaded.graph) return o.code = bad_input, false;
+  if (!loaded.graph) {
+    add_new(loaded.problems, o);
+    return o.code = bad_input, false;
+  }
   RunOptions options;
   apply(args.run, options);
+  Diagnostics of_demand;
+  options.demand = demand_of(*loaded.graph, args.wanted, of_demand);
+  drop_unused(*loaded.graph, options.demand.ports, loaded.problems);
+  add_new(loaded.problems, o);
+  o.problems.add(of_demand);
   options.effects = effect_policy(session.registry(), assignments(args.forced), args.skipped, o.problems);
-  options.demand = demand_of(*loaded.graph, args.wanted, o.problems);
   options.out_folder = args.out;
   options.frame = frame;
   if (auto d = overwriting(*loaded.graph, args.trace, "--trace")) o.problems.add(std::move(*d));

@@ -382,5 +382,19 @@ TEST(CliPlan, SaysWhichConventionsHold) {
   EXPECT_EQ(stated, 1);
 }
 
+// What is asked for is read by who asks.
+TEST(CliInspect, ANodeThatIsLookedAtIsNotCalledUnused) {
+  const TempFolder folder;
+  const std::string graph = folder.write("g.json", R"({ "format": "frustum.graph/1", "nodes": {
+    "ring": { "type": "mesh.torus" }, "joined": { "type": "mesh.weld", "in": { "mesh": "ring" } },
+    "ball": { "type": "mesh.sphere" } },
+    "outputs": { "box": { "from": "ball", "file": "ball.ply" } } })");
+  EXPECT_THAT(frustum({"inspect", graph, "joined"}).err, Not(HasSubstr("unused_node")));
+  const auto other = frustum({"inspect", graph, "ball"});
+  EXPECT_EQ(times(other.err, "unused_node"), 1) << other.err << "ring feeds joined, which nobody reads";
+  EXPECT_THAT(frustum({"run", graph, "--out", folder.file("o"), "--want", "joined.mesh"}).err,
+              Not(HasSubstr("unused_node")));
+}
+
 }  // namespace
 }  // namespace frustum
