@@ -158,12 +158,16 @@ bool TriangleTree::crosses(const Triangle& t, const Sight& sight, const Shear& s
 
 // The way of a ray through boxes.
 struct TriangleTree::Slabs {
-  glm::dvec3 from, inverse;
+  glm::dvec3 from, inverse, pad{0};
 
-  // 1 / 0 times 0 would be NaN; 2^-1000 stands for 0, and 2^1000 times any length in the scene is far beyond it.
+  // 1 / 0 times 0 would be NaN; 2^-1000 stands for 0, and 2^1000 times any length in the scene is far beyond it. A ray that
+  // runs along a side of the box is in it: what it is off there, 0 or a rounding, counts for less than `pad`.
   Slabs(const glm::dvec3& start, const glm::dvec3& along) : from(start) {
-    for (glm::length_t k = 0; k < 3; ++k)
-      inverse[k] = 1 / (std::fabs(along[k]) > 0x1p-1000 ? along[k] : 0x1p-1000);
+    for (glm::length_t k = 0; k < 3; ++k) {
+      const bool moves = std::fabs(along[k]) > 0x1p-1000;
+      inverse[k] = 1 / (moves ? along[k] : 0x1p-1000);
+      pad[k] = moves ? 0 : 0x1p960;
+    }
   }
 
   struct Interval {
@@ -179,7 +183,8 @@ struct TriangleTree::Slabs {
     for (glm::length_t k = 0; k < 3; ++k) {
       const double s = (static_cast<double>(low[k]) - from[k]) * inverse[k],
                    t = (static_cast<double>(high[k]) - from[k]) * inverse[k];
-      in.near = std::max(in.near, std::min(s, t)), in.far = std::min(in.far, std::max(s, t) * wider);
+      in.near = std::max(in.near, std::min(s, t) - pad[k]);
+      in.far = std::min(in.far, std::max(s, t) * wider + pad[k]);
     }
     return in;
   }

@@ -29,6 +29,7 @@ std::vector<HardCase> orders();
 std::vector<HardCase> partitions();
 std::vector<HardCase> shading();
 std::vector<HardCase> shadows();
+std::vector<HardCase> rays();
 std::vector<HardCase> texture();
 std::vector<HardCase> sampling();
 std::vector<HardCase> colour();
