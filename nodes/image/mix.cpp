@@ -46,7 +46,7 @@ void require_alike(const Frame& a, const Frame& b, std::string_view input) {
 void require_color(const Frame& of, const Frame& as, std::string_view input) {
   if (of.color_space == as.color_space && (of.alpha == as.alpha || !of.find("A") || !as.find("A"))) return;
   throw NodeError(
-      "different_colors",
+      "colors_differ",
       fmt::format("image and {} have colours of different spaces, or other states of alpha", input),
       at_input(input));
 }

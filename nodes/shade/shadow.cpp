@@ -93,7 +93,7 @@ NodeType nodes::shade_shadow() {
       .cite(
           "Appel 1968, Some techniques for shading machine renderings of solids, doi:10.1145/1468075.1468082")
       .cite("Woop, Benthin & Wald 2013, Watertight ray/triangle intersection, JCGT 2(1)")
-      .covers(61)
+      .covers(61, 76)
       .input("points", &Inputs::points, "Visible points: id and P.")
       .input("mesh", &Inputs::mesh,
              "The mesh the points were seen on; it says where a point's own face lies.")

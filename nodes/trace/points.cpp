@@ -135,7 +135,6 @@ NodeType nodes::trace_points() {
   return pixel_node("trace.points", prepare, tile)
       .doc("Gives the attributes of the faces that rays have met, with how they change from pixel to pixel.")
       .cite("Igehy 1999, Tracing ray differentials, doi:10.1145/311535.311555")
-      .covers(71)
       .input("rays", &Inputs::rays, "The rays, for how points change from pixel to pixel.")
       .input("hits", &Inputs::hits, "What they have met.")
       .input("mesh", &Inputs::mesh, "The mesh that was met.", {.space = {Space::object, Space::world}})

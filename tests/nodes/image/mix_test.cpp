@@ -73,7 +73,7 @@ std::string error_of(Buffer other) {
 
 TEST(ImageMix, PicturesThatDoNotGoTogetherAreRefused) {
   EXPECT_EQ(error_of(picture(5, rgb, 1)), "different_frames");
-  EXPECT_EQ(error_of(picture(4, rgb, 1, "srgb_rec709_scene")), "different_colors");
+  EXPECT_EQ(error_of(picture(4, rgb, 1, "srgb_rec709_scene")), "colors_differ");
   EXPECT_EQ(error_of(picture(4, rgb, 1)), "");
 }
 

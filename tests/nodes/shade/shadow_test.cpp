@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 namespace frustum {
 namespace {
 
@@ -46,6 +49,43 @@ TEST(ShadeShadow, IsTheProjectionOfAPlateForTheSunAndForALamp) {
       }
     EXPECT_GT(dark, 1000);
   }
+}
+
+// The course's row 76: under a lamp at height H a disc of radius r at height h has a round shadow, of radius r H / (H - h).
+// What lies above the lamp casts none (errata E45): a second disc there, wider, changes nothing.
+TEST(ShadeShadow, ADiscUnderALampHasARoundShadowOfItsRadius) {
+  const double lamp_height = 3, height = 1.2, radius = 0.8,
+               shadow_radius = radius * lamp_height / (lamp_height - height);
+  constexpr int sides = 720;
+  const auto disc = [](double r, double y) {
+    std::vector<glm::vec3> fan;
+    for (int i = 0; i < sides; ++i) {
+      const auto rim = [&](int k) {
+        const double a = 2 * std::numbers::pi * k / sides;
+        return glm::vec3(r * std::cos(a), y, r * std::sin(a));
+      };
+      fan.insert(fan.end(), {glm::vec3(0, y, 0), rim(i + 1), rim(i)});
+    }
+    return fan;
+  };
+  std::vector<glm::vec3> both = disc(radius, height), above = disc(3, lamp_height + 0.1);
+  both.insert(both.end(), above.begin(), above.end());
+  const Floor floor;
+  const Buffer lamp = one_light({.kind = Light::Kind::point, .position = {0, lamp_height, 0}});
+  const Raster seen = shadow(floor, floor.with(both), {lamp}).whole();
+  const double within =
+      shadow_radius * std::cos(std::numbers::pi / sides) - 1e-5;  // of the polygon that the disc is
+  int dark = 0;
+  for (int y = 0; y < floor.edge; ++y)
+    for (int x = 0; x < floor.edge; ++x) {
+      const glm::dvec3 p = floor.at(x, y);
+      const double r = std::hypot(p.x, p.z);
+      if (r > within && r < shadow_radius + 1e-5) continue;
+      ASSERT_EQ(seen.at<float>(0, 0, x, y), r < shadow_radius ? 0 : 1) << x << ' ' << y;
+      dark += r < shadow_radius;
+    }
+  EXPECT_NEAR(dark * std::pow(2 * floor.size / floor.edge, 2),
+              std::numbers::pi * shadow_radius * shadow_radius, 0.1);
 }
 
 TEST(ShadeShadow, KeepsTheLawOfTiles) {
