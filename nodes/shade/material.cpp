@@ -26,10 +26,10 @@ struct Outputs {
 double lobe_of(const Material& m) {
   switch (m.model) {
     case Reflection::lambert: return 0;
-    case Reflection::phong: return phong_reflectance(m.shininess);
+    case Reflection::phong: return kernels::phong_reflectance(m.shininess);
     case Reflection::blinn: break;
   }
-  return blinn_reflectance(m.shininess);
+  return kernels::blinn_reflectance(m.shininess);
 }
 
 Outputs run(const Inputs&, const Params& p, Context& ctx) {

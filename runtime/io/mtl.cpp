@@ -1,5 +1,6 @@
 #include "runtime/io/mtl.h"
 
+#include "nodes/kernels/reflectance.h"
 #include "runtime/core/error.h"
 #include "runtime/io/file_bytes.h"
 #include "runtime/io/image_files.h"
@@ -21,8 +22,9 @@
 namespace frustum {
 namespace {
 
+using mtl::Counts;
 using mtl::Library;
-using mtl::Skipped;
+using mtl::Told;
 using mtl::Written;
 using obj::Cursor;
 
@@ -54,13 +56,13 @@ class Materials {
       return warn("missing_material_file",
                   fmt::format("{}: there is no file {}", obj_.written, printable(file->written, 80)));
     const FileBytes bytes(*file);
-    Skipped skipped;
-    mtl::parse(bytes.text(), *file, library_, skipped);
-    if (skipped.empty()) return;
-    std::vector<std::string> list;
-    for (const auto& [what, n] : skipped) list.push_back(fmt::format("{} x {}", n, what));
-    list.resize(std::min<std::size_t>(list.size(), 20));
-    warn("statements_skipped", fmt::format("{}: skipped {}", file->written, fmt::join(list, ", ")));
+    Told told;
+    mtl::parse(bytes.text(), *file, library_, told);
+    if (!told.skipped.empty())
+      warn("statements_skipped", fmt::format("{}: skipped {}", file->written, list(told.skipped)));
+    if (!told.held.empty())
+      warn("values_held", fmt::format("{}: a material cannot have {}; it has the nearest value it can",
+                                      told.held_at, list(told.held)));
   }
 
   Material find(std::string_view name) {
@@ -85,6 +87,7 @@ class Materials {
       out.texture_from_uv[0][0] = w.scale.x, out.texture_from_uv[1][1] = w.scale.y;
       out.texture_from_uv[2] = {w.offset, 1};
     }
+    note_energy(out);
     return out;
   }
 
@@ -98,9 +101,29 @@ class Materials {
       warn("missing_material",
            fmt::format("{}: {} materials are in no material file; they have the default values", obj_.written,
                        missing_));
+    if (bright_ != 0)
+      warn("makes_energy",
+           fmt::format(
+               "{}: {} materials send back more light than falls on them; '{}' sends back {:.3g} of it",
+               obj_.written, bright_, printable(brightest_, 80), most_reflected_));
   }
 
  private:
+  static std::string list(const Counts& counts) {
+    std::vector<std::string> out;
+    for (const auto& [what, n] : counts) out.push_back(fmt::format("{} x {}", n, what));
+    out.resize(std::min<std::size_t>(out.size(), 20));
+    return fmt::format("{}", fmt::join(out, ", "));
+  }
+
+  void note_energy(const Material& m) {
+    const glm::dvec3 sent = m.diffuse + m.specular * kernels::blinn_reflectance(m.shininess);
+    const double share = std::max({sent.r, sent.g, sent.b});
+    if (!(share > 1)) return;
+    ++bright_;
+    if (share > most_reflected_) most_reflected_ = share, brightest_ = m.name;
+  }
+
   void warn(std::string code, std::string message) { ctx_.warn(std::move(code), std::move(message)); }
 
   Ref<Texture> texture(const Written& w) {
@@ -129,7 +152,9 @@ class Materials {
   std::set<std::string> seen_;
   Library library_;
   std::map<std::pair<std::string, bool>, Ref<Texture>> textures_;
-  std::uint64_t missing_ = 0;
+  std::uint64_t missing_ = 0, bright_ = 0;  // bright: materials that make energy
+  double most_reflected_ = 1;
+  std::string brightest_;
 };
 
 }  // namespace
@@ -164,9 +189,9 @@ void visit_obj_files(std::string_view text, const FilePath& obj,
       if (!once(file)) continue;
       try {
         Library library;
-        Skipped skipped;
+        Told told;
         const FileBytes bytes(*file);
-        mtl::parse(bytes.text(), *file, library, skipped);
+        mtl::parse(bytes.text(), *file, library, told);
         for (const auto& [material, written] : library) once(near_path(obj, written.map_kd));
       } catch (const std::runtime_error&) {  // the node that reads it says what is wrong
       }

@@ -27,7 +27,9 @@ namespace frustum {
 // map_Kd        texture in its file's own space, its alpha left out; -s and -o scale and move it, -clamp on
 //               ends it at its borders, -mm and the rest are reported
 // d, Tr        opacity d, or 1 - Tr where there is no d (programs do not agree on Tr); outside [0, 1] reported
-// map_* and whatever else has no counterpart is counted (warning "statements_skipped").
+// map_* and whatever else has no counterpart is counted (warning "statements_skipped"). Colours below 0 and Ns
+// outside [0, 1e6] are held there ("values_held"); Kd and Ks that send back more light than falls in are kept
+// ("makes_energy").
 //
 // A file that is missing, absolute or climbs out of the folder of the OBJ is not read and said so: warnings
 // "missing_material_file", "missing_texture_file", "unsafe_path"; "missing_material" for names. A file named

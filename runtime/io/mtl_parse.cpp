@@ -9,16 +9,19 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace frustum::mtl {
 namespace {
 
 using obj::Cursor;
 
+constexpr double max_shininess = 1e6;  // of shade.material
+
 class Parser {
  public:
-  Parser(std::string_view text, const FilePath& file, Library& library, Skipped& skipped)
-      : text_(text), file_(file), in_(text), library_(library), skipped_(skipped) {}
+  Parser(std::string_view text, const FilePath& file, Library& library, Told& told)
+      : text_(text), file_(file), in_(text), library_(library), told_(told) {}
 
   void run() {
     if (text_.starts_with("\xEF\xBB\xBF")) in_.take('\xEF'), in_.take('\xBB'), in_.take('\xBF');
@@ -55,7 +58,7 @@ class Parser {
     else if (key == "Ke")
       now_->ke = color(key);
     else if (key == "Ns")
-      now_->ns = std::max(0.0, number());
+      now_->ns = held(key, number(), max_shininess);
     else if (key == "illum")
       illum();
     else if (key == "d" || key == "Tr")
@@ -66,7 +69,14 @@ class Parser {
       skip(key);
   }
 
-  void skip(std::string_view what) { ++skipped_[printable(what, 30)]; }
+  void skip(std::string_view what) { ++told_.skipped[printable(what, 30)]; }
+
+  double held(std::string_view key, double v, double most) {
+    if (v >= 0 && v <= most) return v;
+    if (told_.held.empty()) told_.held_at = place();
+    ++told_.held[fmt::format("{} {:.3g}", key, v)];
+    return std::clamp(v, 0.0, most);
+  }
 
   double number() {
     const auto v = in_.number<double>();
@@ -82,12 +92,13 @@ class Parser {
       skip(fmt::format("{} {}", key, w));
       return {};
     }
-    const double r = number();
+    const auto channel = [&] { return held(key, number(), std::numeric_limits<double>::max()); };
+    const double r = channel();
     in_.skip_blanks();
     if (in_.line_done()) return glm::dvec3(r);
-    const double g = number();
+    const double g = channel();
     in_.skip_blanks();
-    const double b = number();
+    const double b = channel();
     return glm::dvec3(r, g, b);
   }
 
@@ -165,7 +176,7 @@ class Parser {
   const FilePath& file_;
   Cursor in_;
   Library& library_;
-  Skipped& skipped_;
+  Told& told_;
   std::size_t line_ = 0;
   Written* now_ = nullptr;
   Written repeated_;
@@ -173,8 +184,8 @@ class Parser {
 
 }  // namespace
 
-void parse(std::string_view text, const FilePath& file, Library& library, Skipped& skipped) {
-  Parser(text, file, library, skipped).run();
+void parse(std::string_view text, const FilePath& file, Library& library, Told& told) {
+  Parser(text, file, library, told).run();
 }
 
 }  // namespace frustum::mtl

@@ -26,11 +26,18 @@ struct Written {
 };
 
 using Library = std::map<std::string, Written, std::less<>>;
-// Statements without a counterpart here, and how many.
-using Skipped = std::map<std::string, std::uint64_t>;
+// Statements, and how many of each.
+using Counts = std::map<std::string, std::uint64_t>;
 
-// Adds the materials of a file to a library; the first definition of a name counts. Throws
-// NodeError("malformed_file") with file:line.
-void parse(std::string_view text, const FilePath& file, Library& library, Skipped& skipped);
+// What a file says and its materials do not have.
+struct Told {
+  Counts skipped;       // without a counterpart here
+  Counts held;          // values beyond what a material may have, which became the nearest one it may
+  std::string held_at;  // file:line of the first of those
+};
+
+// Adds the materials of a file to a library; the first definition of a name counts. Colours are at least 0, and
+// Ns lies within [0, 1e6], what shade.material takes. Throws NodeError("malformed_file") with file:line.
+void parse(std::string_view text, const FilePath& file, Library& library, Told& told);
 
 }  // namespace frustum::mtl

@@ -101,6 +101,34 @@ TEST_F(Obj, IlluminationWithoutLobesHasNoSpecular) {
   EXPECT_THAT(messages, HasSubstr("1 x illum 5"));
 }
 
+TEST_F(Obj, ValuesThatNoMaterialMayHaveAreHeldAndTold) {
+  const Material& m = material("newmtl one\nKd 0.5 -1 0\nKa -1 0 0\nKs -0.5\nKe -1 0 2\nNs -5\n");
+  EXPECT_EQ(m.diffuse, glm::dvec3(0.5, 0, 0));
+  EXPECT_EQ(m.ambient, glm::dvec3(0, 1, 1));
+  EXPECT_EQ(m.specular, glm::dvec3(0));
+  EXPECT_EQ(m.emission, glm::dvec3(0, 0, 2));
+  EXPECT_EQ(m.shininess, 0);
+  EXPECT_EQ(messages,
+            "a.mtl:2: a material cannot have 1 x Ka -1, 1 x Kd -1, 1 x Ke -1, 1 x Ks -0.5, 1 x Ns -5; it has "
+            "the nearest value it can\n");
+  EXPECT_EQ(material("newmtl one\nNs 1e9\n").shininess, 1e6);
+  EXPECT_THAT(warnings, ElementsAre("values_held"));
+  EXPECT_EQ(material("newmtl one\nNs 1e6\nKd 0 0 0\n").shininess, 1e6);
+  EXPECT_THAT(warnings, ElementsAre());
+}
+
+TEST_F(Obj, MaterialsThatMakeEnergyAreTold) {
+  EXPECT_EQ(material("newmtl one\nKd 2 0.5 0\n").diffuse, glm::dvec3(2, 0.5, 0)) << "kept";
+  EXPECT_EQ(messages,
+            "m.obj: 1 materials send back more light than falls on them; 'one' sends back 2 of it\n");
+  material("newmtl one\nKd 0.8\nKs 1\nNs 5\n");
+  EXPECT_THAT(warnings, ElementsAre("makes_energy")) << "by the highlight";
+  material("newmtl one\nKd 0.8\nKs 1\nNs 5\nillum 1\n");
+  EXPECT_THAT(warnings, ElementsAre()) << "there is none";
+  material("newmtl one\nKd 1\nKs 0\n");
+  EXPECT_THAT(warnings, ElementsAre());
+}
+
 TEST_F(Obj, WhatHasNoCounterpartIsCounted) {
   material(
       "newmtl one\nd 1.5\nTr -1\nd -halo 0.5\nmap_Bump -bm 1 b.png\nmap_Ks k.png\nKd spectral f.rfl\nnewmtl "

@@ -1,7 +1,7 @@
 // check.energy: the quadrature against closed forms, and what it says of Phong and Blinn.
 #include "nodes/check/energy.h"
 #include "nodes/check.h"
-#include "nodes/shade/material.h"
+#include "nodes/kernels/reflectance.h"
 #include "runtime/buffers/material.h"
 #include "runtime/buffers/value.h"
 #include "tests/support/tiles.h"
@@ -30,8 +30,8 @@ TEST(CheckEnergy, GaussIntegratesPolynomialsExactly) {
 TEST(CheckEnergy, StraightLightGivesTheClosedForms) {
   const Gauss g(64);
   for (const double e : {0.0, 1.0, 5.5, 32.0, 500.0, 1e5}) {
-    EXPECT_NEAR(highlight_share(Lobe::phong, e, 0, g) / phong_reflectance(e), 1, 1e-12) << e;
-    EXPECT_NEAR(highlight_share(Lobe::blinn, e, 0, g) / blinn_reflectance(e), 1, 1e-3) << e;
+    EXPECT_NEAR(highlight_share(Lobe::phong, e, 0, g) / kernels::phong_reflectance(e), 1, 1e-12) << e;
+    EXPECT_NEAR(highlight_share(Lobe::blinn, e, 0, g) / kernels::blinn_reflectance(e), 1, 1e-3) << e;
   }
 }
 
@@ -85,7 +85,7 @@ TEST(CheckEnergy, SaysByHowMuchASurfaceMakesLight) {
   const double by_phong = checked(m).at(4, 0);
   m.model = Reflection::blinn;
   EXPECT_EQ(by_phong, 0);
-  EXPECT_NEAR(checked(m).at(4, 0), 0.9 * blinn_reflectance(6) - 0.5, 1e-3);
+  EXPECT_NEAR(checked(m).at(4, 0), 0.9 * kernels::blinn_reflectance(6) - 0.5, 1e-3);
 }
 
 TEST(CheckEnergy, CountsTheStrongestChannelAndNothingOfUnlit) {
