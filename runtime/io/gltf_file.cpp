@@ -19,10 +19,10 @@ static_assert(std::endian::native == std::endian::little, "glTF stores little-en
 constexpr std::uint32_t glb_magic = 0x46546C67, json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
 
 // What a file may say that it requires: all that this reader gives the meaning it has.
-constexpr std::array supported{"KHR_lights_punctual",  "KHR_materials_emissive_strength",
-                               "KHR_materials_ior",    "KHR_materials_pbrSpecularGlossiness",
-                               "KHR_materials_unlit",  "KHR_mesh_quantization",
-                               "KHR_texture_transform"};
+constexpr std::array supported{"KHR_lights_punctual",    "KHR_materials_emissive_strength",
+                               "KHR_materials_ior",      "KHR_materials_pbrSpecularGlossiness",
+                               "KHR_materials_specular", "KHR_materials_unlit",
+                               "KHR_mesh_quantization",  "KHR_texture_transform"};
 
 std::uint32_t word(std::string_view bytes, std::size_t at) {
   std::uint32_t w = 0;

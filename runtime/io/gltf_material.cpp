@@ -45,8 +45,17 @@ struct Wishes {
   std::optional<std::size_t> roughness;  // image whose mean green and blue scale roughness and metalness
   double metallic = 1, roughness_factor = 1;
   glm::dvec3 base{1};
-  double alpha = 1;  // of the base colour
+  double alpha = 1;       // of the base colour
+  bool is_metal = false;  // without a look at pictures
   double dielectric = 0.04;
+  double specular = 1;           // KHR_materials_specular: what that is scaled by
+  glm::dvec3 specular_color{1};  // so, and at most to 1
+
+  glm::dvec3 dielectric_f0() const {
+    glm::dvec3 f0 = dielectric * specular_color;
+    for (glm::length_t k = 0; k < 3; ++k) f0[k] = std::min(f0[k], 1.0) * specular;
+    return f0;
+  }
 };
 
 void set_lobe(Material& m, const glm::dvec3& f0, double alpha) {
@@ -58,8 +67,9 @@ void set_lobe(Material& m, const glm::dvec3& f0, double alpha) {
 
 void set_metallic_roughness(Material& m, const Wishes& w, double mean_metallic, double mean_roughness) {
   const double metallic = w.metallic * mean_metallic, roughness = w.roughness_factor * mean_roughness;
-  m.diffuse = w.base * ((1 - metallic) * (1 - w.dielectric));
-  set_lobe(m, glm::dvec3(w.dielectric) * (1 - metallic) + w.base * metallic, roughness * roughness);
+  const glm::dvec3 f0 = w.dielectric_f0();
+  m.diffuse = w.base * ((1 - metallic) * (1 - std::max({f0.x, f0.y, f0.z})));
+  set_lobe(m, f0 * (1 - metallic) + w.base * metallic, roughness * roughness);
 }
 
 class Reader {
@@ -102,7 +112,8 @@ class Reader {
       w.roughness = {};
     }
     alpha(o, w);
-    own_numbers(o, m, w);
+    const bool came_back = own_numbers(o, m, w);
+    if (w.is_metal && !came_back && !m.unlit) note_metal(o);
     note_the_rest(o);
     wishes_.push_back(w);
     return m;
@@ -126,6 +137,7 @@ class Reader {
       if (n != 0 && !(n >= 1)) ior->fail_at("ior", "this must be 0, or 1 and more");
       w.dielectric = n == 0 ? 1 : (n - 1) * (n - 1) / ((n + 1) * (n + 1));
     }
+    if (const auto specular = o.extension("KHR_materials_specular")) read_specular(o, *specular, w);
     if (const auto pbr = o.object("pbrMetallicRoughness")) {
       base_color(*pbr, "baseColorFactor", w);
       w.metallic = share(*pbr, "metallicFactor"), w.roughness_factor = share(*pbr, "roughnessFactor");
@@ -135,8 +147,18 @@ class Reader {
         if (const auto source = texture(*t)) w.roughness = source->image;
       }
     }
-    if (w.metallic > 0 && !w.roughness) note_metal(o);
+    w.is_metal = w.metallic > 0 && !w.roughness;
     set_metallic_roughness(m, w, 1, 1);
+  }
+
+  void read_specular(const Object& o, const Object& specular, Wishes& w) {
+    w.specular = share(specular, "specularFactor");
+    const auto c = specular.numbers<3>("specularColorFactor").value_or(std::array{1.0, 1.0, 1.0});
+    for (const double v : c)
+      if (!(v >= 0)) specular.fail_at("specularColorFactor", "this must not be negative");
+    w.specular_color = {c[0], c[1], c[2]};
+    if (specular.has("specularTexture") || specular.has("specularColorTexture"))
+      notes_.add(o.path(), "has a specular texture, which is left out");
   }
 
   void note_metal(const Object& o) {
@@ -172,9 +194,9 @@ class Reader {
   }
 
   // What gltf_material_writer wrote beside the colours that other programs read, if those are still the same.
-  static void own_numbers(const Object& o, Material& m, const Wishes& w) {
+  static bool own_numbers(const Object& o, Material& m, const Wishes& w) {
     if (!o.has_object("extras") || !o.object("extras")->has_object("frustum"))
-      return;  // they may be anything
+      return false;  // they may be anything
     const auto ours = o.object("extras")->object("frustum");
     Material n = m;
     const auto take = [&](const char* key, glm::dvec3& to) {
@@ -190,8 +212,12 @@ class Reader {
     const std::string model = ours->text("model").value_or("blinn");
     for (const auto& [value, name] : choices(n.model))
       if (model == name) n.model = value;
-    if (written_base_color(n) == w.base && written_roughness(n) == w.roughness_factor && w.metallic == 0)
-      m = n;
+    const Surface written = surface_of(n);
+    const bool same = written.base == w.base && written.metallic == w.metallic &&
+                      written.roughness == w.roughness_factor &&
+                      written.specular == w.specular * w.specular_color;
+    if (same) m = n;
+    return same;
   }
 
   void alpha(const Object& o, Wishes& w) {
@@ -213,7 +239,8 @@ class Reader {
     if (o.has("normalTexture")) notes_.add(o.path(), "has a normal texture, which is left out");
     if (o.has("occlusionTexture")) notes_.add(o.path(), "has an occlusion texture, which is left out");
     static const std::set<std::string> known = {"KHR_materials_pbrSpecularGlossiness", "KHR_materials_ior",
-                                                "KHR_materials_emissive_strength", "KHR_materials_unlit"};
+                                                "KHR_materials_emissive_strength", "KHR_materials_specular",
+                                                "KHR_materials_unlit"};
     if (const auto extensions = o.object("extensions"))
       for (const std::string& name : extensions->keys())
         if (!known.contains(name)) notes_.add(o.path(), fmt::format("has {}, which is left out", name));

@@ -15,8 +15,9 @@ namespace frustum::gltf {
 // metallic-roughness model becomes a Blinn lobe (glTF 2.0, appendix B; Walter et al. 2007, EGSR, "Microfacet
 // models for refraction", eq. 30; Karis 2013, "Real shading in Unreal Engine 4"):
 //
-//   F0         = 0.04 + (base - 0.04) metallic, of the base colour factor; 0.04 is an index of 1.5
-//   diffuse    = base (1 - metallic) (1 - 0.04): what the surface lets in at normal incidence
+//   F0         = f + (base - f) metallic, of the base colour factor, where f is 0.04, that of an index of 1.5, or
+//                what KHR_materials_ior and KHR_materials_specular say
+//   diffuse    = base (1 - metallic) (1 - max f): what the surface lets in at normal incidence
 //   shininess  = 2 / alpha^2 - 2 with alpha = roughness^2: the exponent n for which D = (n + 2) / (2 pi)
 //                cos^n h is as wide as the GGX lobe; rounded, and at most 1024
 //   specular   = F0 (n + 2) / 8: the microfacet lobe D F G / (4 n.l n.v) under a light of colour 1 (which is

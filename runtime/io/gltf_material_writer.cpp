@@ -42,11 +42,15 @@ class Writer {
   Writer(const AddPicture& add, const SaveRequest& request) : add_(add), request_(request) {}
 
   Json material(const Material& m, std::optional<double> opacity) {
-    const glm::dvec3 base = written_base_color(m);
+    const Surface surface = surface_of(m);
+    if (surface.limited)
+      warn_left_out(request_, "glTF",
+                    fmt::format("the light that material '{}' sends back beyond what falls on it", m.name));
+    const glm::dvec3& base = surface.base;
     const double cutoff = cutoff_of(m);
     Json pbr = {{"baseColorFactor", {base.x, base.y, base.z, cutoff > 0 ? 1 : opacity.value_or(1)}},
-                {"metallicFactor", 0},
-                {"roughnessFactor", written_roughness(m)}};
+                {"metallicFactor", surface.metallic},
+                {"roughnessFactor", surface.roughness}};
     if (m.texture) add_texture(m, pbr);
     Json out = {
         {"name", m.name}, {"pbrMetallicRoughness", std::move(pbr)}, {"extras", {{"frustum", ours(m)}}}};
@@ -57,6 +61,7 @@ class Writer {
       out["alphaMode"] = "BLEND";
     add_emission(m, out);
     if (m.unlit) out["extensions"][use("KHR_materials_unlit")] = Json::object();
+    add_specular(surface, out);
     return out;
   }
 
@@ -78,6 +83,15 @@ class Writer {
             {"model", choices(m.model)[static_cast<std::size_t>(m.model)].second},
             {"specular", color(m.specular)},
             {"shininess", m.shininess}};
+  }
+
+  void add_specular(const Surface& surface, Json& out) {
+    if (surface.specular == glm::dvec3(1)) return;
+    Json& specular = out["extensions"][use("KHR_materials_specular")];
+    if (surface.specular == glm::dvec3(0))
+      specular["specularFactor"] = 0;
+    else
+      specular["specularColorFactor"] = color(surface.specular);
   }
 
   void add_emission(const Material& m, Json& out) {
@@ -124,13 +138,26 @@ class Writer {
 
 }  // namespace
 
-glm::dvec3 written_base_color(const Material& m) {
-  const auto clamped = [](double v) { return std::clamp(v, 0.0, 1.0); };
-  return {clamped(m.diffuse.x), clamped(m.diffuse.y), clamped(m.diffuse.z)};
-}
-
-double written_roughness(const Material& m) {
-  return std::sqrt(std::sqrt(2 / (std::max(m.shininess, 0.0) + 2)));
+Surface surface_of(const Material& m) {
+  constexpr double usual = 0.04;  // F0 of an index of 1.5
+  Surface out;
+  const auto held = [&](double v) {
+    out.limited = out.limited || !(v >= 0 && v <= 1);
+    return std::clamp(v, 0.0, 1.0);
+  };
+  const double shininess = std::max(m.shininess, 0.0);
+  out.roughness = std::sqrt(std::sqrt(2 / (shininess + 2)));
+  glm::dvec3 f0(0);
+  for (glm::length_t k = 0; k < 3 && !m.unlit && m.model != Reflection::lambert; ++k)
+    f0[k] = held(8 * m.specular[k] / (shininess + 2));
+  const double most = std::max({f0.x, f0.y, f0.z});
+  if (most > 0 && m.diffuse == glm::dvec3(0)) {
+    out.base = f0, out.metallic = 1;
+    return out;
+  }
+  for (glm::length_t k = 0; k < 3; ++k) out.base[k] = m.diffuse[k] == 0 ? 0 : held(m.diffuse[k] / (1 - most));
+  if (!m.unlit && f0 != glm::dvec3(usual)) out.specular = f0 / usual;
+  return out;
 }
 
 void write_materials(std::span<const Material> materials, std::span<const std::optional<double>> opacity,

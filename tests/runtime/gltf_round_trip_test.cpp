@@ -137,6 +137,58 @@ TEST_P(RoundTrip, MaterialsComeBack) {
                 mesh.at("position").values<glm::vec3>()[mesh.triangles()[f][c]]);
 }
 
+// A highlight of the given reflectance straight on.
+Material shiny(const char* name, const glm::dvec3& diffuse, const glm::dvec3& f0, double shininess) {
+  return {.name = name, .diffuse = diffuse, .specular = f0 * ((shininess + 2) / 8), .shininess = shininess};
+}
+const std::vector<Material> surfaces{
+    shiny("gold", {0, 0, 0}, {1, 0.75, 0.25}, 30), shiny("plastic", {0.5, 0.25, 0}, {0.04, 0.04, 0.04}, 14),
+    shiny("silk", {0.25, 0.5, 0.125}, {0.25, 0.125, 0.5}, 62), shiny("chalk", {0.75, 0.5, 1}, {0, 0, 0}, 30),
+    shiny("soot", {0, 0, 0}, {0, 0, 0}, 30)};
+
+TEST_P(RoundTrip, MetalsComeBack) {
+  const Mesh back = there_and_back(strip(surfaces));
+  EXPECT_THAT(warnings_, ElementsAre());
+  for (std::size_t i = 0; i < surfaces.size(); ++i) expect_same(surfaces[i], back.materials->materials.at(i));
+}
+
+// Without "extras": the numbers that every program reads.
+TEST(GltfMaterials, OfOtherProgramsAreTheSameSurfaces) {
+  const test::TempFolder folder;
+  const FilePath file{"m.gltf", folder.file("m.gltf")};
+  Context ctx;
+  save_buffer_file(Ref<Mesh>(test::shared(strip(surfaces))), {.path = file.resolved}, ctx);
+  auto json = nlohmann::json::parse(FileBytes(file).text());
+  const auto& gold = json["materials"][0]["pbrMetallicRoughness"];
+  EXPECT_EQ(gold["metallicFactor"], 1);
+  EXPECT_EQ(gold["baseColorFactor"], (nlohmann::json{1, 0.75, 0.25, 1}));
+  EXPECT_EQ(gold["roughnessFactor"], 0.5) << "alpha = 1/4, 2 / alpha^2 - 2 = 30";
+  EXPECT_FALSE(json["materials"][1].contains("extensions")) << "0.04 is what glTF has";
+  for (auto& material : json["materials"]) material.erase("extras");
+  const Mesh back = read_gltf(json.dump(), file, true, ctx).mesh;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const Material &from = surfaces[i], &to = back.materials->materials.at(i);
+    SCOPED_TRACE(from.name);
+    expect_same(from.diffuse, to.diffuse, 1e-15);
+    expect_same(from.specular, to.specular, 1e-14);
+    EXPECT_EQ(from.shininess, to.shininess);
+  }
+}
+
+TEST_P(RoundTrip, LightThatNoSurfaceSendsBackIsTold) {
+  const std::vector<Material> bright{Material{.name = "white", .diffuse{1, 1.5, 1}},
+                                     shiny("mirror", {0, 0, 0}, {1, 1, 1.25}, 30),
+                                     shiny("both", {0.75, 0.5, 0.5}, {0.5, 0.25, 0.25}, 30),
+                                     shiny("within", {0.5, 0.5, 0.5}, {0.5, 0, 0}, 30)};
+  const Mesh back = there_and_back(strip(bright));
+  std::vector<std::string> told;
+  for (const char* name : {"white", "mirror", "both"})
+    told.push_back(fmt::format(
+        "glTF has no place for the light that material '{}' sends back beyond what falls on it", name));
+  EXPECT_EQ(warnings_, told);
+  for (std::size_t i = 0; i < bright.size(); ++i) expect_same(bright[i], back.materials->materials.at(i));
+}
+
 TEST_P(RoundTrip, OpacityComesBack) {
   Mesh mesh = strip({Material{.name = "wood"}, Material{.name = "glass"},
                      Material{.name = "veil", .texture = picture(4, 4, false)}});

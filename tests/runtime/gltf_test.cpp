@@ -251,6 +251,14 @@ TEST(Gltf, AMaterialKeepsItsReflectance) {
       {{"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.7, 0.3, 1}}, {"roughnessFactor", 0.5}}}});
   EXPECT_EQ(brass.diffuse, glm::dvec3(0)) << "metal unless said otherwise";
   EXPECT_NEAR(brass.specular.b, 0.3 * 32 / 8, 1e-12);
+  const Tree tinted = {{"specularFactor", 0.5}, {"specularColorFactor", {2, 1, 100}}};
+  const Material satin =
+      material_of({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
+                   {"extensions", {{"KHR_materials_specular", tinted}}}});
+  EXPECT_NEAR(satin.specular.r, 0.04 * 32 / 8, 1e-12);
+  EXPECT_NEAR(satin.specular.g, 0.02 * 32 / 8, 1e-12);
+  EXPECT_NEAR(satin.specular.b, 0.5 * 32 / 8, 1e-12) << "at most 1, then by the factor";
+  EXPECT_NEAR(satin.diffuse.r, 0.5, 1e-12);
   for (const double roughness : {0.0, 0.1, 0.3, 0.7, 1.0})
     for (const double metallic : {0.0, 0.5, 1.0}) {
       const Material m = material_of(
