@@ -413,15 +413,17 @@ class Assembler {
     const std::span<const std::uint32_t> of(out, faces_);
     m.columns.push_back(std::move(column));
     if (auto clear = transparency_by_material<R>(of, from.opacity)) m.columns.push_back(std::move(clear));
-    check_coordinates(from.set);
+    check_coordinates(used, from.set);
     m.materials = std::make_shared<const MaterialSet>(std::move(from.set));
   }
 
   // A texture whose faces have no coordinates shows one texel.
-  void check_coordinates(MaterialSet& set) {
-    for (Material& material : set.materials) {
+  void check_coordinates(std::span<const std::size_t> used, MaterialSet& set) {
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      Material& material = set.materials[i];
       if (!material.texture || uv_sets_.contains(material.uv_set)) continue;
-      notes_.add(material.name, "has a texture, and no face texture coordinates for it: it is left out");
+      notes_.add(materials_[used[i]].path(),
+                 "has a texture, and no face texture coordinates for it: it is left out");
       material.texture = nullptr;
     }
   }

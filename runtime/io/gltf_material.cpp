@@ -90,7 +90,7 @@ class Reader {
     for (const std::size_t i : used) out.set.materials.push_back(material(materials_[i]));
     decode();
     for (std::size_t i = 0; i < used.size(); ++i) {
-      finish(out.set.materials[i], wishes_[i]);
+      finish(materials_[used[i]], wishes_[i], out.set.materials[i]);
       out.opacity.push_back(wishes_[i].alpha);
     }
     return out;
@@ -171,7 +171,10 @@ class Reader {
     for (const double v : s)
       if (!(v >= 0 && v <= 1)) o.fail_at("specularFactor", "this must lie in [0, 1]");
     const double rough = 1 - share(o, "glossinessFactor");
-    m.diffuse = w.base * (1 - std::max({s[0], s[1], s[2]}));
+    const double most = std::max({s[0], s[1], s[2]});
+    constexpr double brightest_dielectric = 0.2;  // diamond has 0.17
+    w.is_metal = most > brightest_dielectric;
+    m.diffuse = w.base * (1 - most);
     set_lobe(m, {s[0], s[1], s[2]}, rough * rough);
     if (const auto t = o.object("diffuseTexture")) use_color_texture(*t, m, w);
     if (o.has("specularGlossinessTexture"))
@@ -384,13 +387,12 @@ class Reader {
     p.mean_green = mean(green), p.mean_blue = mean(blue);
   }
 
-  void finish(Material& m, const Wishes& w) {
+  void finish(const Object& o, const Wishes& w, Material& m) {
     if (w.color) m.texture = made_.at({w.color->image, w.color->use});
     if (!w.roughness) return;
     const Picture& p = pictures_.at(*w.roughness);
     set_metallic_roughness(m, w, p.mean_blue, p.mean_green);
-    if (w.metallic * p.mean_blue > 0.5)
-      notes_.add(m.name, "is metal, which shows highlights but mirrors no surroundings");
+    if (w.metallic * p.mean_blue > 0.5) note_metal(o);
   }
 
   const FilePath& file_;

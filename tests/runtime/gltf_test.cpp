@@ -268,6 +268,18 @@ TEST(Gltf, AMaterialKeepsItsReflectance) {
     }
 }
 
+TEST(Gltf, MetalsOfEitherModelAreTold) {
+  const auto told = [](const Tree& model) {
+    std::string said;
+    material_of({{"extensions", {{"KHR_materials_pbrSpecularGlossiness", model}}}}, &said);
+    return said;
+  };
+  const auto metal = HasSubstr("materials[0] is metal, which shows highlights but mirrors no surroundings");
+  EXPECT_THAT(told(Tree::object()), metal) << "specular [1, 1, 1] unless said otherwise: diffuse 0";
+  EXPECT_THAT(told({{"specularFactor", {0.9, 0.6, 0.2}}}), metal);
+  EXPECT_THAT(told({{"specularFactor", {0.04, 0.04, 0.04}}}), testing::Not(HasSubstr("metal")));
+}
+
 TEST(Gltf, WhatDoesNotMapIsSaidOnceAKind) {
   std::string said;
   const Material m = material_of({{"doubleSided", true},
@@ -300,6 +312,19 @@ GltfMaker textured() {
   g.document["images"] = {{{"uri", "card.png"}}};
   g.node({{"mesh", g.mesh({{"attributes", {{"POSITION", p}, {"TEXCOORD_0", uv}}}, {"material", 0}})}});
   return g;
+}
+
+TEST(Gltf, MaterialsWithoutANameAreToldByTheirNumber) {
+  test::TempFolder folder;
+  std::filesystem::copy_file(std::string(FRUSTUM_SOURCE_DIR) + "/graphs/data/card.png",
+                             folder.file("card.png"));
+  GltfMaker g = textured();
+  g.document["materials"][0].erase("name");
+  g.document["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
+  Context ctx;
+  EXPECT_EQ(read(g.glb(), ctx, {"m.glb", folder.file("m.glb")}).mesh.materials->materials.at(0).texture,
+            nullptr);
+  EXPECT_THAT(warnings(ctx), HasSubstr("materials[0] has a texture, and no face texture coordinates for it"));
 }
 
 TEST(Gltf, TexturesAreReadFromBesideAndFromInside) {
