@@ -10,16 +10,19 @@
 #include "runtime/io/gltf_primitive.h"
 #include "runtime/io/gltf_read.h"
 #include "runtime/io/gltf_scene.h"
+#include "runtime/io/printable.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <new>
 #include <optional>
 #include <set>
+#include <type_traits>
 
 namespace frustum {
 namespace {
@@ -62,6 +65,7 @@ class Assembler {
     m.columns.push_back(normals(m));
     for (const std::uint32_t set : uv_sets_) m.columns.push_back(uv_column(set));
     if (color_width_ != 0) m.columns.push_back(color_width_ == 3 ? colors<3>() : colors<4>());
+    for (const auto& [name, width] : own_widths_) m.columns.push_back(own_column(name, width));
     add_materials(m);
     report();
     return out;
@@ -104,6 +108,14 @@ class Assembler {
     if (!p.normal) facets_ += p.triangles();
     if (p.color) color_width_ = std::max(color_width_, p.color->width == 4 && alpha_counts(p) ? 4 : 3);
     for (const auto& [set, accessor] : p.uv) uv_sets_.insert(set);
+    for (const auto& [name, accessor] : p.own) {
+      const auto [known, fresh] = own_widths_.try_emplace(name, accessor.width);
+      if (fresh)
+        own_width_ += accessor.width;
+      else if (known->second != accessor.width)
+        notes_.add(p.path, fmt::format("has {} numbers of '{}' a vertex, and others {}: they are left out",
+                                       accessor.width, printable(name, 80), known->second));
+    }
     if (std::max(vertices_, faces_) > std::size_t{1} << 40) check_size();  // long before the sums overflow
   }
 
@@ -117,8 +129,8 @@ class Assembler {
   }
 
   void check_size() const {
-    const double numbers =
-        static_cast<double>(vertices_) * (6.0 + color_width_ + 2.0 * static_cast<double>(uv_sets_.size()));
+    const double numbers = static_cast<double>(vertices_) *
+                           (6.0 + color_width_ + own_width_ + 2.0 * static_cast<double>(uv_sets_.size()));
     const double bytes =
         numbers * sizeof(R) + static_cast<double>(faces_) * (facets_ != 0 ? 16 + 9.0 * sizeof(R) : 16.0);
     if (bytes > 0x1p26 + 256.0 * static_cast<double>(size_ + data_.bytes()))
@@ -353,6 +365,27 @@ class Assembler {
     return column;
   }
 
+  // 0 where a primitive has no such attribute. Vectors are not turned: nothing says that they are directions.
+  Ref<Column> own_column(const std::string& name, int width) {
+    auto column = std::make_shared<Column>(name, Domain::vertex, number_kind_of<R>, width, vertices_);
+    for (const Part& p : parts_) {
+      if (p.shares) continue;
+      ctx_.poll();
+      R* out = static_cast<R*>(column->data()) + p.vertex * static_cast<std::size_t>(width);
+      const auto at = p.primitive->own.find(name);
+      if (at == p.primitive->own.end() || at->second.width != width) {
+        std::fill_n(out, p.primitive->vertices() * static_cast<std::size_t>(width), R(0));
+        continue;
+      }
+      const auto read = [&]<int n>(std::integral_constant<int, n>) {
+        if (n == width) read_rows<R, n>(at->second, file_, out, [](std::size_t, std::size_t) {});
+      };
+      read(std::integral_constant<int, 1>()), read(std::integral_constant<int, 2>());
+      read(std::integral_constant<int, 3>()), read(std::integral_constant<int, 4>());
+    }
+    return column;
+  }
+
   template <int width>
   Ref<Column> colors() {
     using Color = glm::vec<width, R>;
@@ -456,7 +489,8 @@ class Assembler {
   std::vector<Part> parts_;
   std::size_t vertices_ = 0, faces_ = 0, facets_ = 0, mended_ = 0;  // facets: faces without normals
   std::set<std::uint32_t> uv_sets_;
-  int color_width_ = 0;
+  std::map<std::string, int> own_widths_;
+  int color_width_ = 0, own_width_ = 0;  // own: their sum
 };
 
 }  // namespace

@@ -30,7 +30,9 @@ struct GltfScene {
 // (parents first) and of the primitives, at its place. Columns in ctx.precision:
 //   position, triangle (strips and fans become lists; mirrored instances are turned, so that fronts stay
 //   fronts), normal (by the transposed inverse; where a primitive has none, of its faces, as the format asks,
-//   and then the column is one of corners), uv, uv1 ... (v up: 1 - the file's), color, material.
+//   and then the column is one of corners), uv, uv1 ... (v up: 1 - the file's), color, material;
+//   attributes of applications as columns of their names in lower case ("quality" for _QUALITY, with "gltf_" before it
+//   where the name has a meaning here), 0 where a primitive has none.
 // Positions that no face names stay. Faces without a material have the usual one; materials are those that
 // faces have; column transparency where one blends (runtime/io/gltf_material.h). Points and lines, tangents, skins, morph targets and animations are left out, and said so once.
 //

@@ -215,6 +215,10 @@ Accessor::Sparse Data::sparse_of(const Object& o, const Accessor& a) {
   return s;
 }
 
+bool Data::is_matrix(std::size_t accessor) const {
+  return accessors_[accessor].text("type").value_or("").starts_with("MAT");
+}
+
 Accessor Data::accessor(std::size_t i) {
   const Object& o = accessors_[i];
   Accessor a;

@@ -64,6 +64,7 @@ class Data {
   // `binary`: the BIN chunk of a GLB file.
   Data(const Object& document, const FilePath& file, std::optional<std::string_view> binary);
 
+  bool is_matrix(std::size_t accessor) const;
   std::size_t accessors() const { return accessors_.size(); }
   std::size_t views() const { return views_.size(); }
   // Throw NodeError("malformed_file") naming the accessor, view or buffer.

@@ -1,5 +1,7 @@
 #include "runtime/io/gltf_primitive.h"
 
+#include "runtime/io/gltf_attribute.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,6 +73,14 @@ class Reader {
       wanted(a, a.width == 2 && (is_float(a) || is_share(a) || is_quantized(a)),
              "VEC2 of floats or normalised unsigned bytes or shorts");
       p.uv.emplace(*set, a);
+    } else if (const std::string column = column_of(name); !column.empty()) {
+      const std::size_t at = *attributes.index(name, "accessors", data_.accessors());
+      const bool numbers = !data_.is_matrix(at) && !p.own.contains(column);
+      const Accessor a = numbers ? accessor() : Accessor{};
+      if (numbers && a.component != Component::u32)  // which 3.7.2.1 forbids
+        p.own.emplace(column, a);
+      else
+        notes_.add(p.path, fmt::format("has the attribute {}, which is left out", name));
     } else if (name == "TANGENT") {
       notes_.add(p.path, "has tangents, which are left out");
     } else if (name != "JOINTS_0" && name != "WEIGHTS_0") {  // a skin is noted where it stands
@@ -114,6 +124,13 @@ class Reader {
   Notes& notes_;
 };
 
+template <class Key>
+bool same(const std::map<Key, Accessor>& a, const std::map<Key, Accessor>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+    return x.first == y.first && x.second.path == y.second.path;
+  });
+}
+
 bool same(const std::optional<Accessor>& a, const std::optional<Accessor>& b) {
   return a.has_value() == b.has_value() && (!a || a->path == b->path);
 }
@@ -122,9 +139,7 @@ bool same(const std::optional<Accessor>& a, const std::optional<Accessor>& b) {
 
 bool Primitive::same_vertices(const Primitive& other) const {
   return position.path == other.position.path && same(normal, other.normal) && same(color, other.color) &&
-         std::equal(uv.begin(), uv.end(), other.uv.begin(), other.uv.end(), [](const auto& a, const auto& b) {
-           return a.first == b.first && a.second.path == b.second.path;
-         });
+         same(uv, other.uv) && same(own, other.own);
 }
 
 std::vector<Primitive> read_primitives(const Object& mesh, const FilePath& file, Data& data,

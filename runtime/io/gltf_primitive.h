@@ -19,6 +19,7 @@ struct Primitive {
   Accessor position;
   std::optional<Accessor> normal, color, index;
   std::map<std::uint32_t, Accessor> uv;  // by set
+  std::map<std::string, Accessor> own;   // the application's, by column
   std::optional<std::size_t> material;
 
   std::size_t vertices() const { return position.count; }

@@ -1,6 +1,7 @@
 #include "runtime/buffers/texture.h"
 #include "runtime/buffers/transparency.h"
 #include "runtime/core/error.h"
+#include "runtime/io/gltf_attribute.h"
 #include "runtime/io/gltf_material_writer.h"
 #include "runtime/io/mesh_writers.h"
 #include "runtime/io/vertex_split.h"
@@ -136,9 +137,7 @@ class Writer {
     if (c.name() == "color") return "COLOR_0";
     if (c.name() == "uv") return "TEXCOORD_0";
     if (is_coordinates(c)) return "TEXCOORD_" + c.name().substr(2);
-    std::string name = "_" + c.name();
-    for (char& ch : name) ch = ch >= 'a' && ch <= 'z' ? static_cast<char>(ch - 32) : ch <= ' ' ? '_' : ch;
-    return name;
+    return gltf::attribute_of(c.name());
   }
 
   // uv, uv1, uv2 ...
@@ -151,10 +150,15 @@ class Writer {
     Json out = Json::object();
     for (const Ref<Column>& c : mesh_.columns) {
       const bool is_real = c->kind() == NumberKind::f32 || c->kind() == NumberKind::f64;
-      if (c->domain() == Domain::vertex && is_real)
-        out[attribute_name(*c)] = add_column(*c, is_coordinates(*c), c->name() == "position");
-      else if (c->name() != "triangle" && c->name() != "material" && c->name() != transparency_column)
+      const std::string name = attribute_name(*c);
+      if (c->domain() == Domain::vertex && is_real && !out.contains(name)) {
+        if (name[0] == '_' && gltf::column_of(name) != c->name())
+          warn_left_out(request_, "glTF",
+                        fmt::format("the name of column '{}', which is {} there", c->name(), name));
+        out[name] = add_column(*c, is_coordinates(*c), c->name() == "position");
+      } else if (c->name() != "triangle" && c->name() != "material" && c->name() != transparency_column) {
         warn_left_out(request_, "glTF", fmt::format("column '{}'", c->name()));
+      }
     }
     return out;
   }

@@ -22,7 +22,7 @@ namespace frustum {
 //   obj         text, decimals that read back to the same bits: position, color (sRGB, as other programs
 //               write it), uv, normal and names of materials; texture and colours of materials are left out
 //   glb, gltf   glTF 2.0, one primitive a material: real vertex columns as f32 (double is rounded), texture
-//               coordinates turned upside down as glTF has them; materials with their textures and what of
+//               coordinates turned upside down as glTF has them, others than glTF knows as _NAME; materials with their textures and what of
 //               them is seen through, as runtime/io/gltf_material_writer.h says. Both are one file each: a .gltf
 //               holds its numbers and pictures inside, as base64
 //

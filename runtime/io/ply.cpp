@@ -1,5 +1,7 @@
 #include "runtime/io/ply.h"
 
+#include "runtime/buffers/material.h"
+#include "runtime/io/column_names.h"
 #include "runtime/io/file_bytes.h"
 #include "runtime/io/file_colors.h"
 #include "runtime/io/normals.h"
@@ -11,7 +13,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <utility>
 
@@ -22,14 +23,6 @@ using ply::Cut;
 using ply::Element;
 using ply::Piece;
 using ply::Property;
-
-bool has_meaning(std::string_view name) {
-  // Columns of a mesh, and planes that rasterize.attributes gives besides.
-  static constexpr std::array names{"triangle", "position", "normal", "color", "world", "origin",
-                                    "material", "id",       "w",      "z",     "R",     "G",
-                                    "B",        "A",        "N",      "P"};
-  return std::find(names.begin(), names.end(), name) != names.end() || name.starts_with("uv");
-}
 
 template <class R>
 class PlyReader {
@@ -131,7 +124,17 @@ class PlyReader {
                               {"red", "green", "blue"},
                               {"diffuse_red", "diffuse_green", "diffuse_blue"}})
       if (!color_) take_color(e, slots, names);
+    take_more_uv(e, slots);
     take_others(e, slots, Domain::vertex);
+  }
+
+  // What write_ply makes of columns uv1, uv2 ...
+  void take_more_uv(const Element& e, std::vector<Slot>& slots) {
+    constexpr std::uint32_t most_uv_sets = 16;  // as many as are read of glTF
+    for (std::uint32_t set = 1; set < most_uv_sets; ++set) {
+      const std::string name = uv_column_name(set), u = name + "_x", v = name + "_y";
+      if (auto column = take(e, slots, {u, v}, name, true)) vertex_others_.push_back(std::move(column));
+    }
   }
 
   void take_color(const Element& e, std::vector<Slot>& slots, std::initializer_list<std::string_view> names) {

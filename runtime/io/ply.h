@@ -15,6 +15,7 @@ namespace frustum {
 //   x y z                                                  position, object space; must be there and finite
 //   nx ny nz                                               normal, made unit length
 //   u v, s t, texture_u texture_v or texture_s texture_t   uv; v goes up, as in OBJ
+//   uv1_x uv1_y to uv15_x uv15_y                           uv1 to uv15, as write_ply names them
 //   red green blue [alpha], also diffuse_red ...           color: whole numbers are sRGB (0 to 255 or 65535),
 //                                                          as the pictures and scanners are that they come
 //                                                          from, and are decoded to linear Rec.709; real ones

@@ -175,6 +175,26 @@ TEST(GltfMaterials, OfOtherProgramsAreTheSameSurfaces) {
   }
 }
 
+TEST_P(RoundTrip, ColumnsOfOtherNamesComeBack) {
+  Mesh mesh = test::mesh_of<glm::vec3>({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, Space::world);
+  const std::vector<glm::vec3> normal(3, glm::vec3(0, 0, 1)), flow{{1, 2, 3}, {4, 5, 6}, {7, 8, -9}};
+  const std::vector<float> quality{0.25F, 0.5F, 1};
+  mesh.columns.push_back(Column::make<glm::vec3>("normal", Domain::vertex, normal));
+  mesh.columns.push_back(Column::make<float>("quality", Domain::vertex, quality));
+  mesh.columns.push_back(Column::make<glm::vec3>("flow_2", Domain::vertex, flow));
+  mesh.columns.push_back(Column::make<float>("w", Domain::vertex, quality));
+  mesh.columns.push_back(Column::make<float>("Heat", Domain::vertex, quality));
+  mesh.columns.push_back(Column::make<float>("HEAT", Domain::vertex, quality));
+  const Mesh back = there_and_back(mesh);
+  EXPECT_EQ(test::column<float>(back, "quality"), quality);
+  EXPECT_EQ(test::column<glm::vec3>(back, "flow_2"), flow);
+  EXPECT_EQ(test::column<float>(back, "gltf_w"), quality);
+  EXPECT_EQ(test::column<float>(back, "heat"), quality);
+  EXPECT_THAT(warnings_, ElementsAre("glTF has no place for the name of column 'w', which is _W there",
+                                     "glTF has no place for the name of column 'Heat', which is _HEAT there",
+                                     "glTF has no place for column 'HEAT'"));
+}
+
 TEST_P(RoundTrip, LightThatNoSurfaceSendsBackIsTold) {
   const std::vector<Material> bright{Material{.name = "white", .diffuse{1, 1.5, 1}},
                                      shiny("mirror", {0, 0, 0}, {1, 1, 1.25}, 30),

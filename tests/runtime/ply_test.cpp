@@ -144,6 +144,20 @@ TEST(Ply, RealColoursAreLinearAndAlphaIsKept) {
   EXPECT_EQ(values<glm::vec4>(n, "color")[0], glm::vec4(1, 0, grey, 32768 / 65535.0f));
 }
 
+TEST(Ply, FurtherCoordinatesComeBackAsTheyAreWritten) {
+  const auto [m, warnings] = read(
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float uv1_x\nproperty float uv15_y\nproperty float uv1_y\nproperty float uv15_x\n"
+      "property float uv16_x\nproperty float uv16_y\nproperty float uv2_x\nend_header\n0 0 0 1 2 3 4 5 6 "
+      "7\n");
+  EXPECT_EQ(m.validate(), "");
+  EXPECT_EQ(values<glm::vec2>(m, "uv1")[0], glm::vec2(1, 3));
+  EXPECT_EQ(values<glm::vec2>(m, "uv15")[0], glm::vec2(4, 2));
+  EXPECT_EQ(values<float>(m, "ply_uv16_x")[0], 5);
+  EXPECT_EQ(values<float>(m, "ply_uv2_x")[0], 7) << "half a pair";
+  EXPECT_THAT(warnings, ElementsAre("no_faces"));
+}
+
 TEST(Ply, NamesWithAMeaningHereAreSetApart) {
   const auto m =
       read(
