@@ -75,11 +75,12 @@ class AsciiRows {
     if (word().empty()) too_few();
   }
   template <class R>
-  R real(Number) {
+  R real(Number type) {
+    if (!is_real(type)) return static_cast<R>(whole(type));
     skip_blanks();
     R v{};
     const char* stop = read_decimal(at_, end_, v);
-    if (stop == nullptr || !ends(stop)) return not_a_number(), R{};
+    if (stop == nullptr || !ends(stop)) return not_a_number(type), R{};
     at_ = stop;
     return v;
   }
@@ -87,7 +88,7 @@ class AsciiRows {
     skip_blanks();
     std::int64_t v = 0;
     const auto [stop, problem] = std::from_chars(at_, end_, v);
-    if (problem != std::errc() || !ends(stop) || !fits(v, type)) return not_a_number(), 0;
+    if (problem != std::errc() || !ends(stop) || !fits(v, type)) return not_a_number(type), 0;
     at_ = stop;
     return v;
   }
@@ -104,22 +105,33 @@ class AsciiRows {
     return {start, static_cast<std::size_t>(at_ - start)};
   }
   bool ends(const char* stop) const { return stop == end_ || is_blank(*stop) || *stop == eol_; }
+  struct Range {
+    std::int64_t least, most;
+  };
+  static Range range_of(Number whole_type) {
+    const auto bits = static_cast<int>(8 * bytes_of(whole_type));
+    const bool is_signed = whole_type == Number::i8 || whole_type == Number::i16 || whole_type == Number::i32;
+    const std::int64_t count = std::int64_t{1} << bits, least = is_signed ? -count / 2 : 0;
+    return {least, least + count - 1};
+  }
   static bool fits(std::int64_t v, Number type) {
     if (is_real(type)) return true;
-    const auto bits = static_cast<int>(8 * bytes_of(type));
-    const bool is_signed = type == Number::i8 || type == Number::i16 || type == Number::i32;
-    return is_signed ? v >= -(std::int64_t{1} << (bits - 1)) && v < std::int64_t{1} << (bits - 1)
-                     : v >= 0 && v < std::int64_t{1} << bits;
+    const Range range = range_of(type);
+    return v >= range.least && v <= range.most;
   }
   void too_few() {
     if (error.empty()) error = "the row ends before all of its numbers";
   }
-  void not_a_number() {
+  void not_a_number(Number type) {
     const std::string_view w = word();
-    if (w.empty())
-      too_few();
-    else if (error.empty())
+    if (w.empty()) return too_few();
+    if (!error.empty()) return;
+    if (is_real(type)) {
       error = fmt::format("'{}' is not a number of the kind that stands here", printable(w));
+    } else {
+      const Range range = range_of(type);
+      error = fmt::format("'{}' is no whole number from {} to {}", printable(w), range.least, range.most);
+    }
   }
 
   const char *begin_, *at_, *end_;

@@ -241,9 +241,33 @@ TEST(Ply, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(problem(body(three + "3 0 1 3\n")), "m.ply:13: face 0: index 3 is not one of 3 vertices");
   EXPECT_EQ(problem(body(three + "3 0 1 -1\n")), "m.ply:13: face 0: index -1 is not one of 3 vertices");
   EXPECT_EQ(problem(body(three + "255 0 1\n")), "m.ply:13: face 0: the row ends before all of its numbers");
-  EXPECT_EQ(problem(body(three + "256 0 1\n")),
-            "m.ply:13: face 0: '256' is not a number of the kind that stands here");
+  EXPECT_EQ(problem(body(three + "256 0 1\n")), "m.ply:13: face 0: '256' is no whole number from 0 to 255");
   EXPECT_EQ(problem(body(three)), "m.ply: the file ends after 0 of 1 rows of 'face'");
+}
+
+// Whatever the number becomes: part of a real column, one of its own, an index.
+TEST(Ply, WholeNumbersOfATextLieWithinTheirType) {
+  const auto row = [](const char* type, const std::string& z, const std::string& red,
+                      const std::string& flag) {
+    return fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty {0} z\n"
+        "property {0} red\nproperty {0} green\nproperty {0} blue\nproperty {0} flag\nend_header\n"
+        "0 0 {1} {2} 0 0 {3}\n",
+        type, z, red, flag);
+  };
+  const std::string place = "m.ply:12: vertex 0: ";
+  for (const char* wrong : {"256", "-1", "0.7", "1e2", "x"}) {
+    const std::string said = fmt::format("{}'{}' is no whole number from 0 to 255", place, wrong);
+    EXPECT_EQ(problem(row("uchar", wrong, "0", "0")), said);
+    EXPECT_EQ(problem(row("uchar", "0", wrong, "0")), said);
+    EXPECT_EQ(problem(row("uchar", "0", "0", wrong)), said);
+  }
+  EXPECT_EQ(problem(row("char", "128", "0", "0")), place + "'128' is no whole number from -128 to 127");
+  EXPECT_EQ(problem(row("int", "0", "-2147483649", "0")),
+            place + "'-2147483649' is no whole number from -2147483648 to 2147483647");
+  EXPECT_EQ(problem(row("uint", "4294967296", "0", "0")),
+            place + "'4294967296' is no whole number from 0 to 4294967295");
+  EXPECT_EQ(values<glm::vec3>(read(row("char", "-128", "127", "0")).mesh, "position")[0].z, -128);
 }
 
 // A header that claims much more than there is takes no memory and says so.
