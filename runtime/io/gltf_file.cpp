@@ -61,6 +61,7 @@ Chunks split(std::string_view bytes, const FilePath& file) {
 }
 
 Tree parsed(std::string_view json, const FilePath& file) {
+  if (json.empty()) fail(file, "", "there is nothing in it, and glTF is JSON");
   try {
     return Tree::parse(json);
   } catch (const Tree::parse_error& e) {

@@ -33,13 +33,24 @@ bool is_there(const FilePath& file) {
   return std::filesystem::is_regular_file(file.resolved, none);
 }
 
+// Words of a line, where "\\ " is a blank within one.
+std::vector<std::string> words_of(std::string_view line) {
+  std::vector<std::string> out;
+  for (Cursor in(line); in.skip_blanks(), !in.done();) {
+    const bool joined = !out.empty() && out.back().ends_with('\\');
+    if (!joined) out.emplace_back();
+    if (joined) out.back().back() = ' ';
+    out.back() += in.word();
+  }
+  return out;
+}
+
 // The files that a line of mtllib names: it as one name if there is such a file, else one for each word.
-std::vector<std::string_view> file_names(std::string_view line, const FilePath& obj) {
+std::vector<std::string> file_names(std::string_view line, const FilePath& obj) {
   const auto whole = near_path(obj, line);
-  if (line.find_first_of(" \t") == std::string_view::npos || (whole && is_there(*whole))) return {line};
-  std::vector<std::string_view> names;
-  for (Cursor in(line); in.skip_blanks(), !in.done();) names.push_back(in.word());
-  return names;
+  if (line.find_first_of(" \t") == std::string_view::npos || (whole && is_there(*whole)))
+    return {std::string(line)};
+  return words_of(line);
 }
 
 class Materials {
@@ -141,9 +152,18 @@ class Materials {
       return nullptr;
     }
     const Wrap wrap = w.clamp ? Wrap::clamp : Wrap::repeat;
-    const Raster picture = read_image(file->resolved, file->written).raster;
-    at->second = make_texture(picture, {.wrap_u = wrap, .wrap_v = wrap, .opaque = true}, ctx_);
+    at->second = make_texture(picture(*file, w), {.wrap_u = wrap, .wrap_v = wrap, .opaque = true}, ctx_);
     return at->second;
+  }
+
+  static Raster picture(const FilePath& file, const Written& w) {
+    try {
+      return read_image(file.resolved, file.written).raster;
+    } catch (const NodeError& e) {
+      throw NodeError(e.code, fmt::format("{}: map_Kd: {}", w.map_place, e.what()), e.part);
+    } catch (const WorldError& e) {
+      throw WorldError(e.code, fmt::format("{}: map_Kd: {}", w.map_place, e.what()));
+    }
   }
 
   const FilePath& obj_;
@@ -163,7 +183,7 @@ FileMaterials read_materials(std::span<const std::string_view> libraries, const 
                              std::span<const std::string_view> names, bool textured, Context& ctx) {
   Materials materials(obj, textured, ctx);
   for (const std::string_view line : libraries)
-    for (const std::string_view name : file_names(line, obj)) materials.read(name);
+    for (const std::string& name : file_names(line, obj)) materials.read(name);
   FileMaterials out;
   for (const std::string_view name : names) {
     out.set.materials.push_back(materials.find(name));
@@ -184,7 +204,7 @@ void visit_obj_files(std::string_view text, const FilePath& obj,
   for (std::size_t at = 0; (at = text.find("mtllib", at)) != std::string_view::npos;) {
     Cursor in(text.substr(at += 6));
     in.skip_blanks();
-    for (const std::string_view name : file_names(in.rest_of_line(), obj)) {
+    for (const std::string& name : file_names(in.rest_of_line(), obj)) {
       const auto file = near_path(obj, name);
       if (!once(file)) continue;
       try {

@@ -78,9 +78,13 @@ class Parser {
     return std::clamp(v, 0.0, most);
   }
 
+  [[noreturn]] void no_number() {
+    fail(in_.line_done() ? "the line ends where a number is needed" : obj::no_number<double>(in_.word()));
+  }
+
   double number() {
     const auto v = in_.number<double>();
-    if (!v) fail(obj::no_number<double>(in_.word()));
+    if (!v) no_number();
     return *v;
   }
 
@@ -98,6 +102,7 @@ class Parser {
     if (in_.line_done()) return glm::dvec3(r);
     const double g = channel();
     in_.skip_blanks();
+    if (in_.line_done()) fail(fmt::format("{} needs one number or three, and there are two", key));
     const double b = channel();
     return glm::dvec3(r, g, b);
   }
@@ -138,6 +143,7 @@ class Parser {
       const std::string_view option = ahead.word();
       if (option.size() < 2 || option[0] != '-' || !option_of_map(option, ahead)) break;
     }
+    if (in_.line_done()) return skip("map_Kd without a file");
     now_->map_kd = in_.rest_of_line();
   }
 
@@ -162,7 +168,7 @@ class Parser {
     in_ = after;
     in_.skip_blanks();
     glm::dvec3 v = option == "-s" ? glm::dvec3(1) : glm::dvec3(0);
-    if (!numbers(v)) fail(obj::no_number<double>(in_.word()));
+    if (!numbers(v)) no_number();
     if (option == "-s")
       now_->scale = glm::dvec2(v);
     else if (option == "-o")

@@ -286,14 +286,19 @@ TEST(Gltf, AttributesOfApplicationsAreColumns) {
   const Mesh m = read(g.glb(), ctx).mesh;
   EXPECT_EQ(m.validate(), "");
   EXPECT_THAT(test::column<float>(m, "heat"), ElementsAre(0, 1, 0.2F, 0, 0, 0));
-  EXPECT_THAT(test::column<glm::vec2>(m, "flow"), ElementsAre(glm::vec2(1, 2), glm::vec2(3, 4), glm::vec2(5, 6),
-                                                        glm::vec2(0), glm::vec2(0), glm::vec2(0)));
+  EXPECT_THAT(test::column<glm::vec2>(m, "flow"),
+              ElementsAre(glm::vec2(1, 2), glm::vec2(3, 4), glm::vec2(5, 6), glm::vec2(0), glm::vec2(0),
+                          glm::vec2(0)));
   EXPECT_THAT(test::column<float>(m, "gltf_id"), ElementsAre(0, 1, 0.2F, 0, 0, 0));
   for (const char* part : {"the attribute _WHO, which is left out", "the attribute _TURN, which is left out",
                            "primitives[1] has 2 numbers of 'heat' a vertex, and others 1: they are left out"})
     EXPECT_THAT(warnings(ctx), HasSubstr(part));
   attributes["_HEAT"] = short_one;
   EXPECT_THAT(test::gltf_problem(g.glb()).second, HasSubstr("has 2 elements, and POSITION 3"));
+}
+
+TEST(Gltf, AnEmptyFileIsSaidToBeEmpty) {
+  EXPECT_EQ(test::gltf_problem("").second, "box.glb: there is nothing in it, and glTF is JSON");
 }
 
 TEST(Gltf, MetalsOfEitherModelAreTold) {

@@ -209,6 +209,8 @@ TEST_F(Obj, SeveralLibrariesOnOneLineAndNamesWithBlanks) {
   const std::string faces = triangle + "usemtl one\nf 1/1/1 2/1/1 3/1/1\nusemtl two\nf 1/1/1 2/1/1 3/1/1\n";
   EXPECT_EQ(read("mtllib a b.mtl\nmtllib c.mtl\n" + faces).materials->materials[0].diffuse,
             glm::dvec3(1, 0, 0));
+  EXPECT_EQ(read("mtllib d.mtl a\\ b.mtl\n" + faces).materials->materials[0].diffuse, glm::dvec3(1, 0, 0));
+  EXPECT_THAT(warnings, ElementsAre("missing_material_file", "missing_material"));
   const Mesh m = read("mtllib c.mtl d.mtl\n" + faces);
   EXPECT_EQ(m.materials->materials[0].diffuse, glm::dvec3(0, 1, 0));
   EXPECT_EQ(m.materials->materials[1].diffuse, glm::dvec3(0, 0, 1));
@@ -217,7 +219,9 @@ TEST_F(Obj, SeveralLibrariesOnOneLineAndNamesWithBlanks) {
 
 TEST_F(Obj, SaysWhatIsWrongInAMaterialFile) {
   EXPECT_EQ(problem("newmtl one\nKd 1 x 0\n"), "a.mtl:2: 'x' is not a finite number");
-  EXPECT_EQ(problem("newmtl one\n\nKd 1 0\n"), "a.mtl:3: '' is not a finite number");
+  EXPECT_EQ(problem("newmtl one\n\nKd 1 0\n"), "a.mtl:3: Kd needs one number or three, and there are two");
+  EXPECT_EQ(problem("newmtl one\nKd\n"), "a.mtl:2: the line ends where a number is needed");
+  EXPECT_EQ(problem("newmtl one\nmap_Kd -s\n"), "a.mtl:2: the line ends where a number is needed");
   EXPECT_EQ(problem("newmtl one\nNs 1e400\n"), "a.mtl:2: '1e400' is beyond double precision");
   EXPECT_EQ(problem("newmtl one\nKe nan nan nan\n"), "a.mtl:2: 'nan' is not a finite number");
   EXPECT_EQ(problem("newmtl one\nmap_Kd -s x.png\n"), "a.mtl:2: 'x.png' is not a finite number");
@@ -230,6 +234,14 @@ TEST_F(Obj, SaysWhatIsWrongInAMaterialFile) {
     for (int k = 0; k < 1 + i % 3; ++k) text[random() % text.size()] = static_cast<char>(random());
     problem(text);  // whatever it is, it is a message
   }
+}
+
+TEST_F(Obj, APictureThatIsNoneIsToldWithTheLineThatNamesIt) {
+  folder.write("no picture.png", "import this");
+  EXPECT_THAT(problem("newmtl one\nmap_Kd no picture.png\n"),
+              testing::AllOf(testing::StartsWith("a.mtl:2: map_Kd: "), HasSubstr("no picture.png")));
+  EXPECT_EQ(material("newmtl one\nmap_Kd\nmap_Kd -clamp on # none\n").texture, nullptr);
+  EXPECT_EQ(messages, "a.mtl: skipped 2 x map_Kd without a file\n");
 }
 
 TEST_F(Obj, CachesAreToldOfEveryFile) {
