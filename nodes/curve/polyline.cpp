@@ -132,7 +132,7 @@ NodeType nodes::curve_polyline() {
           "Wang 1984; Filip, Magedson & Markot 1986, CAGD 3:295, theorem 1; Lane & Riesenfeld 1980, PAMI "
           "2:35")
       .covers(107)
-      .input("curve", &Inputs::curve, "What is drawn; a rational curve has weights of at least 0.")
+      .input("curve", &Inputs::curve, "What is drawn.")
       .param("cutting", &Params::cutting,
              "adaptive halves a piece until its bound says that it is straight enough.")
       .param("tolerance", &Params::tolerance,

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -31,7 +32,8 @@ inline double distance_to_segment(const glm::dvec3& q, const glm::dvec3& a, cons
 }
 
 // How far the Bezier piece of these homogeneous points may be from its chord. NaN where a point is not finite.
-// Requires weights of at least 0 for a rational piece; a point without a weight does not count.
+// A point without a weight does not count. Where a weight is below 0 there is no hull to stay in, and the bound is the largest
+// number; parts of a curve whose denominator is above 0 come to have none such.
 inline double deviation_bound(std::span<const glm::dvec4> h, bool rational) {
   const std::size_t n = h.size() - 1;
   double bound = 0;
@@ -43,8 +45,10 @@ inline double deviation_bound(std::span<const glm::dvec4> h, bool rational) {
     return bound;
   }
   std::vector<glm::dvec3> p;
-  for (const glm::dvec4& q : h)
+  for (const glm::dvec4& q : h) {
+    if (q.w < 0) return std::numeric_limits<double>::max();
     if (q.w != 0) p.push_back(glm::dvec3(q) / q.w);
+  }
   for (const glm::dvec3& q : p) raise(distance_to_segment(q, p.front(), p.back()));
   return bound;
 }

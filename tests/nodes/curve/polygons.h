@@ -50,6 +50,28 @@ inline double off(double got, const Rational& want) {
   return std::isfinite(got) ? std::fabs(Rational(Rational(got) - want).get_d()) : INFINITY;
 }
 
+// The node's outputs in double precision.
+inline std::vector<Buffer> run_double(const NodeType& type, const Json& params,
+                                      const NodeInputs& inputs = {}) {
+  Context ctx;
+  ctx.precision = Precision::real_double;
+  return run_node(type, params, inputs, &ctx);
+}
+
+inline Json rows(std::span<const glm::dvec3> p) {
+  Json out = Json::array();
+  for (const glm::dvec3& q : p) out.push_back({q.x, q.y, q.z});
+  return out;
+}
+
+// Derivatives 0 to 2 of a curve.
+inline std::array<glm::dvec3, 3> jet(const Curve& c, double t,
+                                     kernels::KnotSide side = kernels::KnotSide::after) {
+  std::array<glm::dvec3, 3> out;
+  kernels::SplinePoints<double>(c.spline()).at(t, out, side);
+  return out;
+}
+
 inline Ref<Curve> curve_of(Curve c) { return std::make_shared<const Curve>(std::move(c)); }
 
 }  // namespace frustum::test
