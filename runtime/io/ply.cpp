@@ -7,6 +7,7 @@
 #include "runtime/io/normals.h"
 #include "runtime/io/ply_body.h"
 #include "runtime/io/ply_faces.h"
+#include "runtime/io/printable.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -48,6 +49,7 @@ class PlyReader {
   using Vec3 = glm::vec<3, R>;
   using Slot = ply::Slot<R>;
   using Use = typename Slot::Use;
+  using Names = std::initializer_list<std::string_view>;
 
   // ----- what the file has
 
@@ -64,6 +66,7 @@ class PlyReader {
     for (std::size_t e = 0; e < header_.elements.size(); ++e)
       if (e != vertex_ && e != faces_ && e != strips_)
         skipped_.push_back(fmt::format("element {}", header_.elements[e].name));
+    for (const std::string& name : header_.textures) skipped_.push_back("TextureFile " + printable(name, 80));
     vertices_ = header_.elements[vertex_].rows;
   }
 
@@ -99,8 +102,9 @@ class PlyReader {
       if (!p || e.properties[*p].count || slots[*p].use != Use::skip) return nullptr;
       at.push_back(*p);
     }
-    auto column = std::make_shared<Column>(column_name, Domain::vertex, number_kind_of<R>,
-                                           static_cast<int>(at.size()), vertices_, space);
+    const Domain domain = &e == &header_.elements[vertex_] ? Domain::vertex : Domain::face;
+    auto column = std::make_shared<Column>(column_name, domain, number_kind_of<R>,
+                                           static_cast<int>(at.size()), e.rows, space);
     for (std::size_t k = 0; k < at.size(); ++k) {
       Slot& slot = slots[at[k]];
       slot.use = Use::real, slot.finite = finite;
@@ -116,14 +120,10 @@ class PlyReader {
     position_ = take(e, slots, {"x", "y", "z"}, "position", true, Space::object);
     if (!position_) fail("its element 'vertex' has no x, y and z");
     normal_ = take(e, slots, {"nx", "ny", "nz"}, "normal", false);
-    using Names = std::initializer_list<std::string_view>;
     for (const Names names :
          {Names{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}})
       if (!uv_) uv_ = take(e, slots, names, "uv", true);
-    for (const Names names : {Names{"red", "green", "blue", "alpha"},
-                              {"red", "green", "blue"},
-                              {"diffuse_red", "diffuse_green", "diffuse_blue"}})
-      if (!color_) take_color(e, slots, names);
+    color_ = take_color(e, slots, color_scale_);
     take_more_uv(e, slots);
     take_others(e, slots, Domain::vertex);
   }
@@ -137,11 +137,19 @@ class PlyReader {
     }
   }
 
-  void take_color(const Element& e, std::vector<Slot>& slots, std::initializer_list<std::string_view> names) {
-    if (!e.find(*names.begin())) return;
-    const ply::Number type = e.properties[*e.find(*names.begin())].type;
-    color_ = take(e, slots, names, "color", true);
-    color_scale_ = is_real(type) ? 0 : type == ply::Number::u16 ? 65535 : 255;
+  //   scale  becomes what stands for 1; 0: linear
+  std::shared_ptr<Column> take_color(const Element& e, std::vector<Slot>& slots, int& scale) {
+    for (const Names names : {Names{"red", "green", "blue", "alpha"},
+                              {"red", "green", "blue"},
+                              {"diffuse_red", "diffuse_green", "diffuse_blue"}}) {
+      const auto first = e.find(*names.begin());
+      auto column = take(e, slots, names, "color", true);
+      if (!column) continue;
+      const ply::Number type = e.properties[*first].type;
+      scale = is_real(type) ? 0 : type == ply::Number::u16 ? 65535 : 255;
+      return column;
+    }
+    return nullptr;
   }
 
   // Columns of a mesh have different names, and elements may have properties of the same.
@@ -197,6 +205,8 @@ class PlyReader {
         slots[*corners].use = Use::corner_uv;
         has_corner_uv_ = true;
       }
+      // Triangles of strips have none, and would be black.
+      if (!color_ && !strips_) face_color_ = take_color(e, slots, color_scale_);
       take_others(e, slots, Domain::face);
     }
   }
@@ -232,8 +242,8 @@ class PlyReader {
     std::vector<Cut> cuts(pieces_.size());
     tbb::parallel_for(std::size_t{0}, pieces_.size(), [&](std::size_t i) {
       if (pieces_[i].element == faces_)
-        ply::cut_faces<R>(lists_[i], pieces_[i].first, positions, {has_corner_uv_, !face_others_.empty()},
-                          cuts[i]);
+        ply::cut_faces<R>(lists_[i], pieces_[i].first, positions,
+                          {has_corner_uv_, !face_others_.empty() || face_color_}, cuts[i]);
       else if (pieces_[i].element == strips_)
         ply::cut_strips(lists_[i].sizes, lists_[i].indices, cuts[i]);
     });
@@ -253,6 +263,19 @@ class PlyReader {
     });
     if (has_corner_uv_) uv_ = ply::gather_corner_uv<R>(cuts, first, lists_, total);
     for (Ref<Column>& column : face_others_) column = ply::gather_face_column(*column, cuts, first, total);
+    if (face_color_) color_ = of_corners(*ply::gather_face_column(*face_color_, cuts, first, total));
+  }
+
+  // Colours stand at vertices or corners here.
+  std::shared_ptr<Column> of_corners(const Column& faces) const {
+    const std::size_t row = bytes_of(faces.kind()) * static_cast<std::size_t>(faces.width());
+    ctx_.claim(3 * faces.rows() * row);
+    auto out =
+        std::make_shared<Column>(faces.name(), Domain::corner, faces.kind(), faces.width(), 3 * faces.rows());
+    const auto* from = static_cast<const std::byte*>(faces.data());
+    auto* to = static_cast<std::byte*>(out->data());
+    for (std::size_t c = 0; c < out->rows(); ++c) std::copy_n(from + c / 3 * row, row, to + c * row);
+    return out;
   }
 
   // ----- finishing
@@ -317,7 +340,7 @@ class PlyReader {
   std::vector<Piece> pieces_;
   std::vector<ply::Lists<R>> lists_;
   std::vector<std::vector<Slot>> slots_;  // by element
-  std::shared_ptr<Column> position_, normal_, uv_, color_, triangle_;
+  std::shared_ptr<Column> position_, normal_, uv_, color_, face_color_, triangle_;
   std::vector<Ref<Column>> vertex_others_, face_others_;
   std::set<std::string> taken_;  // their names
   int color_scale_ = 0;          // 0: linear

@@ -28,11 +28,13 @@ namespace frustum {
 //                                                          (runtime/io/triangulate.h), fewer than 3 corners
 //                                                          are left out and counted
 //   texcoord (a list of u v for every corner)              uv of corners
+//   red green blue [alpha] ...                             color of corners, as above, where vertices have none
 //   any other number                                       a face column, as above; "face_" stands before a
 //                                                          name that vertices have too
 //   element "tristrips": vertex_indices                    triangle; -1 begins a new strip
 //
-// Reals have ctx.precision. Other elements and lists are skipped (warning "properties_skipped"). Normals that
+// Reals have ctx.precision. Other elements and lists are skipped, and so is the picture that a comment
+// "TextureFile" names (warning "properties_skipped"). Normals that
 // are missing, without length or not finite are made as in read_obj ("normals_computed"); a file of points is
 // a mesh without faces and, where it states none, without normals ("no_faces"). Further warnings:
 // "faces_skipped", "uv_missing", "polygon_fan", "trailing_bytes".

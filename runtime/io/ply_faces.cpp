@@ -76,8 +76,8 @@ template std::shared_ptr<Column> gather_corner_uv(std::span<const Cut>, std::spa
 
 Ref<Column> gather_face_column(const Column& from, std::span<const Cut> cuts,
                                std::span<const std::size_t> first, std::size_t triangles) {
-  auto column = std::make_shared<Column>(from.name(), Domain::face, from.kind(), 1, triangles);
-  const std::size_t size = bytes_of(from.kind());
+  auto column = std::make_shared<Column>(from.name(), Domain::face, from.kind(), from.width(), triangles);
+  const std::size_t size = bytes_of(from.kind()) * static_cast<std::size_t>(from.width());
   auto* to = static_cast<std::byte*>(column->data());
   std::fill_n(to, column->bytes(), std::byte{0});
   for (std::size_t i = 0; i < cuts.size(); ++i)

@@ -40,7 +40,7 @@ template <class R>
 std::shared_ptr<Column> gather_corner_uv(std::span<const Cut> cuts, std::span<const std::size_t> first,
                                          std::span<const Lists<R>> lists, std::size_t triangles);
 
-// A column of one number a row of faces as one of triangles. Strips have 0.
+// A column of faces of the file as one of triangles. Strips have 0.
 Ref<Column> gather_face_column(const Column& from, std::span<const Cut> cuts,
                                std::span<const std::size_t> first, std::size_t triangles);
 

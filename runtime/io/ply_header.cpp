@@ -51,7 +51,9 @@ class HeaderReader {
         read_element();
       } else if (key == "property") {
         read_property();
-      } else if (key != "comment" && key != "obj_info" && !key.empty()) {
+      } else if (key == "comment") {
+        if (word() == "TextureFile") header_.textures.emplace_back(word());
+      } else if (key != "obj_info" && !key.empty()) {
         fail(fmt::format("'{}' is not a line of a PLY header", printable(key)));
       }
     }

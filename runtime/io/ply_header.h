@@ -37,8 +37,9 @@ enum class Encoding : std::uint8_t { ascii, little_endian, big_endian };
 struct Header {
   Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
-  std::size_t bytes = 0;  // of the header: where the body begins
-  char line_end = '\n';   // the last byte of one; '\r' in files of old Macintoshes
+  std::size_t bytes = 0;              // of the header: where the body begins
+  std::vector<std::string> textures;  // what comments say that name one: "TextureFile NAME"
+  char line_end = '\n';               // the last byte of one; '\r' in files of old Macintoshes
 
   std::optional<std::size_t> find(std::string_view element) const;
 };

@@ -27,6 +27,8 @@ struct Facets {
   std::vector<glm::vec<3, R>> normals;  // as stated
   std::vector<std::uint32_t> groups;    // of each facet; empty where there is one solid
   std::size_t tail = 0;                 // bytes after the last facet
+  std::size_t attributes = 0;           // facets whose two attribute bytes are not 0
+  bool header_color = false;            // whether the header states a colour
 };
 
 std::uint32_t stated_count(std::string_view bytes) {
@@ -68,10 +70,14 @@ Facets<R> read_binary(std::string_view bytes, const FilePath& file, Context& ctx
   Facets<R> out;
   out.corners.resize(3 * n), out.normals.resize(n);
   out.tail = bytes.size() - header_bytes - n * facet_bytes;
-  std::atomic<std::size_t> wrong{n};
+  constexpr std::size_t text_bytes = 80;
+  out.header_color = bytes.substr(0, text_bytes).find("COLOR=") != std::string_view::npos;
+  std::atomic<std::size_t> wrong{n}, attributes{0};
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 1 << 13), [&](const auto& range) {
+    std::size_t some = 0;
     for (std::size_t f = range.begin(); f < range.end(); ++f) {
       const char* at = bytes.data() + header_bytes + f * facet_bytes;
+      some += at[48] != 0 || at[49] != 0;
       out.normals[f] = stored_vector<R>(at);
       for (std::size_t k = 0; k < 3; ++k) {
         const auto corner = out.corners[3 * f + k] = stored_vector<R>(at + 12 + 12 * k);
@@ -80,8 +86,10 @@ Facets<R> read_binary(std::string_view bytes, const FilePath& file, Context& ctx
         }
       }
     }
+    attributes += some;
   });
   ctx.poll();
+  out.attributes = attributes;
   if (wrong < n)
     throw NodeError("malformed_file",
                     fmt::format("{}: byte {}: facet {} has a corner that is not finite", file.written,
@@ -231,6 +239,10 @@ Mesh to_mesh(Facets<R> facets, const FilePath& file, Context& ctx) {
         "facet_normals",
         fmt::format("{}: {} facets state a normal on the other side of their winding; the winding is taken",
                     file.written, against.load()));
+  if (facets.attributes != 0 || facets.header_color)
+    ctx.warn("properties_skipped",
+             fmt::format("{}: skipped {}the attribute bytes of {} facets, which may be colours", file.written,
+                         facets.header_color ? "the colour of its header and " : "", facets.attributes));
   if (facets.tail != 0)
     ctx.warn("trailing_bytes",
              fmt::format("{}: {} bytes stand after the last facet", file.written, facets.tail));

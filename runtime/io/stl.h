@@ -18,8 +18,8 @@ namespace frustum {
 // facet's winding (0 0 1 where it has no area). Where the file has several solids that are not empty, face
 // column `group` (u32) counts them from 0. Normals that the file states are held against the winding, and
 // those that point to its other side are counted (warning "facet_normals"); their values are not used.
-// Further warnings: "no_faces", "trailing_bytes". Colours in the attribute bytes are not read: three
-// programs mean three things by them.
+// Further warnings: "no_faces", "trailing_bytes". Colours in the header and the attribute bytes are not
+// read: three programs mean three things by them ("properties_skipped").
 //
 // Throws NodeError("malformed_file") with file:line, or byte and facet, also for corners that are not
 // finite. Memory is below a small multiple of the file's size. Cost: n log n; 1 million triangles, binary, in

@@ -192,6 +192,41 @@ TEST(Ply, CoordinatesOfCornersMakeSeams) {
   EXPECT_THAT(warnings, ElementsAre("normals_computed", "uv_missing"));
 }
 
+TEST(Ply, ColoursOfFacesAreThoseOfTheirCorners) {
+  const std::string face = "element face 2\nproperty list uchar int vertex_indices\n";
+  const std::string colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const std::string rows = three + "3 0 1 2 255 0 128\n3 2 1 0 0 255 0\n";
+  const auto m = read(vertex_header + face + colors + "end_header\n" + rows).mesh;
+  EXPECT_EQ(m.validate(), "");
+  EXPECT_EQ(m.at("color").domain(), Domain::corner);
+  const glm::vec3 first(1, 0, static_cast<float>(kernels::decode(kernels::Curve::srgb, 128 / 255.0))),
+      second(0, 1, 0);
+  EXPECT_THAT(values<glm::vec3>(m, "color"), ElementsAre(first, first, first, second, second, second));
+  EXPECT_EQ(m.find("red"), nullptr);
+  const auto both =
+      read(vertex_header + colors + face + colors +
+           "end_header\n0 0 0 255 0 0\n1 0 0 255 0 0\n0 1 0 255 0 0\n3 0 1 2 0 0 9\n3 2 1 0 0 0 8\n")
+          .mesh;
+  EXPECT_EQ(values<glm::vec3>(both, "color"), std::vector<glm::vec3>(3, {1, 0, 0})) << "vertices come first";
+  EXPECT_THAT(values<std::uint32_t>(both, "blue"), ElementsAre(9, 8)) << "numbers of the faces";
+}
+
+TEST(Ply, AQuadrilateralGivesItsColourToBothTriangles) {
+  std::string text = square;
+  text.insert(text.find("end_header"), "property float red\nproperty float green\nproperty float blue\n");
+  text.insert(text.size() - 1, " 0.5 0.25 2");
+  EXPECT_EQ(values<glm::vec3>(read(text).mesh, "color"), std::vector<glm::vec3>(6, {0.5F, 0.25F, 2}));
+}
+
+TEST(Ply, PicturesOfCommentsAreToldAsSkipped) {
+  std::string text = square;
+  text.insert(text.find("element"), "comment TextureFile skin.png\n");
+  Context ctx;
+  read_ply(text, {"m.ply", "m.ply"}, ctx);
+  ASSERT_EQ(ctx.warnings().size(), 2u);
+  EXPECT_EQ(ctx.warnings()[1].second, "m.ply: skipped TextureFile skin.png");
+}
+
 TEST(Ply, StripsBecomeTriangles) {
   const auto m =
       read(

@@ -29,20 +29,34 @@ const std::string triangle = facet("0 0 1", "0 0 0", "1 0 0", "0 1 0");
 struct Facet {
   glm::vec3 normal, a, b, c;
 };
-std::string binary(const std::vector<Facet>& facets, std::string header = "") {
+std::string binary(const std::vector<Facet>& facets, std::string header = "", std::uint16_t attributes = 0) {
   Bytes out;
   header.resize(80, ' ');
   out.text = header;
   out.add(static_cast<std::uint32_t>(facets.size()));
   for (const Facet& f : facets) {
     for (const glm::vec3& v : {f.normal, f.a, f.b, f.c}) out.add(v.x, v.y, v.z);
-    out.add(std::uint16_t{0xffff});
+    out.add(attributes);
   }
   return out.text;
 }
 const std::vector<Facet> tent{{{0, 0, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                               {{0, 0, -1}, {1, 0, 0}, {-0.0f, 0, 0}, {0, 0, 1}},
                               {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 1, 0}}};
+
+TEST(Stl, ColoursAreToldAsSkipped) {
+  const auto told = [](const std::string& bytes) {
+    Context ctx;
+    read_stl(bytes, {"m.stl", "m.stl"}, ctx);
+    return ctx.warnings().empty() ? std::string() : ctx.warnings()[0].second;
+  };
+  EXPECT_EQ(told(binary(tent)), "");
+  EXPECT_EQ(told(binary(tent, "", 0xffff)),
+            "m.stl: skipped the attribute bytes of 3 facets, which may be colours");
+  EXPECT_EQ(
+      told(binary(tent, "made by hand COLOR=\x01\x02\x03\xff", 0x100)),
+      "m.stl: skipped the colour of its header and the attribute bytes of 3 facets, which may be colours");
+}
 
 TEST(Stl, WeldsCornersOfEqualBits) {
   const auto [m, warnings] = read(binary(tent));
