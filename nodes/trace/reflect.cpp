@@ -73,7 +73,7 @@ NodeType nodes::trace_reflect() {
       .input("rays", &Inputs::rays, "The rays that came.")
       .input("points", &Inputs::points,
              "Where they met the mesh: id, P and N; without N the faces' own normals.")
-      .input("mesh", &Inputs::mesh, "The mesh that was met.", {.space = {Space::object, Space::world}})
+      .input("mesh", &Inputs::mesh, "The mesh that was met, or drawn: it has world positions in any space.")
       .output("rays", &Outputs::rays, "What is mirrored; no ray where nothing was met.")
       .blank_where(&Inputs::points);
 }

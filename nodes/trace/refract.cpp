@@ -82,8 +82,7 @@ NodeType nodes::trace_refract() {
       .input("rays", &Inputs::rays, "The rays that came.")
       .input("points", &Inputs::points,
              "Where they met the mesh: id, P and N; without N the faces' own normals.")
-      .input("mesh", &Inputs::mesh, "The mesh that was met; its fronts face the outside.",
-             {.space = {Space::object, Space::world}})
+      .input("mesh", &Inputs::mesh, "The mesh that was met, or drawn; its fronts face the outside.")
       .param("inside", &Params::inside,
              "Index of refraction behind the fronts; raising it bends more: water 1.33, glass 1.5.",
              {.range = above(0)})

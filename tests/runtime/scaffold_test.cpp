@@ -97,7 +97,7 @@ TEST_P(Scaffold, CompilesWithoutAWarning) {
   auto command = compile_command();
   ASSERT_FALSE(command.empty());
   const test::TempFolder folder;
-  const auto files = scaffold("curve.new_node", GetParam());
+  const auto files = scaffold("lattice.new_node", GetParam());
   ASSERT_EQ(files.size(), 4u);
   for (const ScaffoldFile& f : files) {
     fs::create_directories(fs::path(folder.file(f.path)).parent_path());
@@ -105,9 +105,9 @@ TEST_P(Scaffold, CompilesWithoutAWarning) {
     EXPECT_THAT(f.text, testing::Not(HasSubstr("@")));
   }
   // The header that CMake generates for every family.
-  folder.write("nodes/curve.h",
+  folder.write("nodes/lattice.h",
                "namespace frustum {\nclass NodeType;\n}\n"
-               "namespace frustum::nodes {\nNodeType curve_new_node();\n}\n");
+               "namespace frustum::nodes {\nNodeType lattice_new_node();\n}\n");
   for (const char* option : {"-fsyntax-only", "-Werror", "-I"}) command.emplace_back(option);
   command.push_back(folder.path());
   for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
@@ -120,9 +120,9 @@ TEST_P(Scaffold, CompilesWithoutAWarning) {
 }
 
 TEST_P(Scaffold, ItsGraphIsOneOfTheFormat) {
-  const auto graph = Json::parse(scaffold("curve.new_node", GetParam()).at(3).text);
+  const auto graph = Json::parse(scaffold("lattice.new_node", GetParam()).at(3).text);
   EXPECT_EQ(graph["format"], "frustum.graph/1");
-  EXPECT_THAT(graph.dump(), HasSubstr("\"type\":\"curve.new_node\""));
+  EXPECT_THAT(graph.dump(), HasSubstr("\"type\":\"lattice.new_node\""));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Scaffold, testing::Values(NewNode::geometry, NewNode::pixels),

@@ -107,5 +107,43 @@ TEST(TraceReflect, AFlatMirrorShowsTheSceneMirrored) {
   EXPECT_GT(seen, 200);
 }
 
+// Rays may go on from what the rasterizer has drawn: first hits on the screen, mirrors by rays.
+TEST(TraceReflect, GoesOnFromPointsOfTheRasterizer) {
+  const test::TempFolder folder;
+  const auto run = test::run_in_session(folder, R"({ "format": "frustum.graph/1", "nodes": {
+    "plane":  { "type": "mesh.grid", "params": { "size": [8, 8] } },
+    "ring":   { "type": "mesh.torus" },
+    "placed": { "type": "transform.affine", "in": { "geometry": "ring" }, "params": { "steps": [{ "translate": [0, 1.4, 0] }] } },
+    "scene":  { "type": "mesh.merge", "in": { "meshes": ["plane", "placed"] } },
+    "camera": { "type": "scene.camera", "params": { "eye": [4, 4, 5], "resolution": [120, 80] } },
+    "rays":   { "type": "trace.camera", "in": { "camera": "camera" } },
+    "met":    { "type": "trace.intersect", "in": { "rays": "rays", "mesh": "scene" } },
+    "there":  { "type": "trace.points", "in": { "rays": "rays", "hits": "met", "mesh": "scene" } },
+    "sent":   { "type": "trace.reflect", "in": { "rays": "rays", "points": "there", "mesh": "scene" } },
+    "a":      { "type": "trace.intersect", "in": { "rays": "sent", "mesh": "scene" } },
+    "eye":    { "type": "project.view", "in": { "mesh": "scene", "camera": "camera" } },
+    "clip":   { "type": "project.perspective", "in": { "mesh": "eye", "camera": "camera" } },
+    "cut":    { "type": "clip.homogeneous", "in": { "mesh": "clip" } },
+    "front":  { "type": "cull.backface", "in": { "mesh": "cut" } },
+    "screen": { "type": "project.viewport", "in": { "mesh": "front", "camera": "camera" } },
+    "hits":   { "type": "rasterize.triangles", "in": { "mesh": "screen" } },
+    "points": { "type": "rasterize.attributes", "in": { "hits": "hits", "mesh": "screen" } },
+    "drawn":  { "type": "trace.reflect", "in": { "rays": "rays", "points": "points", "mesh": "screen" } },
+    "b":      { "type": "trace.intersect", "in": { "rays": "drawn", "mesh": "scene" } } },
+    "outputs": { "a": { "from": "a" }, "b": { "from": "b" } } })",
+                                        {"a", "b"});
+  ASSERT_EQ(run.buffers.size(), 2u) << run.said();
+  int met = 0, other = 0;
+  for (int y = 0; y < 80; ++y)
+    for (int x = 0; x < 120; ++x) {
+      const auto a = run.image(0).at<std::uint32_t>(0, 0, x, y),
+                 b = run.image(1).at<std::uint32_t>(0, 0, x, y);
+      met += a != no_face;
+      other += a != b;
+    }
+  EXPECT_GT(met, 500);
+  EXPECT_LT(other, met / 20);
+}
+
 }  // namespace
 }  // namespace frustum
