@@ -33,6 +33,7 @@ std::vector<HardCase> rays();
 std::vector<HardCase> texture();
 std::vector<HardCase> sampling();
 std::vector<HardCase> colour();
+std::vector<HardCase> curves();
 std::vector<HardCase> runtime();
 
 std::vector<stability::Illustration> illustrations();
