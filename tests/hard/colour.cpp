@@ -1,4 +1,7 @@
 // Colour.
+#include "nodes/color/cmy.h"
+#include "nodes/color/rgb_hsv.h"
+#include "nodes/color/xy.h"
 #include "nodes/kernels/simd/transfer.h"
 #include "nodes/kernels/transfer.h"
 #include "runtime/app/export.h"
@@ -226,6 +229,115 @@ void quantising(Trial& t) {
   }
 }
 
+using Color = std::array<float, 3>;
+double farthest(const Color& a, const Color& b) {
+  double worst = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double d = std::fabs(static_cast<double>(a[k]) - b[k]);
+    if (!(d <= worst)) worst = std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
+  }
+  return worst;
+}
+
+// As textbooks print it: no saturation where the greatest is not above 0, and a sextant for each 60 degrees.
+Color textbook_hsv(const Color& c) {
+  const float most = std::max({c[0], c[1], c[2]}), chroma = most - std::min({c[0], c[1], c[2]});
+  float h = 0;
+  if (chroma != 0)
+    h = most == c[0]   ? 60 * ((c[1] - c[2]) / chroma)
+        : most == c[1] ? 60 * (2 + (c[2] - c[0]) / chroma)
+                       : 60 * (4 + (c[0] - c[1]) / chroma);
+  return {h < 0 ? h + 360 : h, most <= 0 ? 0 : chroma / most, most};
+}
+Color textbook_rgb(const Color& hsv) {
+  const float h = hsv[0] / 60, s = hsv[1], v = hsv[2];
+  const int sextant = static_cast<int>(h);
+  const float f = h - static_cast<float>(sextant), p = v * (1 - s), q = v * (1 - s * f),
+              t = v * (1 - s * (1 - f));
+  switch (sextant) {
+    case 0: return {v, t, p};
+    case 1: return {q, v, p};
+    case 2: return {p, v, t};
+    case 3: return {p, q, v};
+    case 4: return {t, p, v};
+    case 5: return {v, p, q};
+    default: return {};  // the seventh: nobody writes it
+  }
+}
+
+void colours_outside_the_cube(Trial& t) {
+  std::vector<Color> colors{
+      {-0.5F, 0, 1}, {2, -1, 0.5F}, {-1, -2, -3}, {-0.25F, -0.25F, -0.25F}, {1e4F, -3, 17}};
+  for (std::size_t n = t.samples(20000, 1000000); n-- > 0;) {
+    Color c{};
+    for (float& v : c) v = static_cast<float>(t.random.uniform(-2, 3));
+    // Where the greatest is next to 0 beside the others there is no saturation to speak of.
+    if (std::fabs(std::max({c[0], c[1], c[2]})) >= 0x1p-10F) colors.push_back(c);
+  }
+  for (const Color& c : colors) {
+    const auto [least, most] = std::minmax({c[0], c[1], c[2]});
+    const double scale = std::max({std::fabs(least), std::fabs(most), most - least}) * 0x1p-24;
+    t.measure(farthest(textbook_rgb(textbook_hsv(c)), c) / scale,
+              farthest(color::rgb_of_hsv(color::hsv_of_rgb(c)), c) / scale, {c[0], c[1], c[2]});
+  }
+  t.require(std::isinf(color::hsv_of_rgb<float>({0, -1, 0})[1]), "what h, s and v do not hold is infinite");
+}
+
+void hues_around(Trial& t) {
+  const float below = std::nextafter(360.0F, 0.0F);
+  for (const float h : {360.0F, below, below + 0x1p-15F, -0.0F, -1e-8F, -1e-30F, 720.0F, -360.0F, 3.6e6F}) {
+    const Color hsv{h, 1, 1}, red{1, 0, 0};
+    t.tally(!(farthest(textbook_rgb(hsv), red) <= 1e-5), !(farthest(color::rgb_of_hsv(hsv), red) <= 1e-5),
+            {h});
+  }
+  for (std::size_t n = t.samples(2000, 100000); n-- > 0;) {
+    const auto whole = static_cast<float>(static_cast<int>(t.random.uniform(-10, 10)));
+    const auto h =
+        static_cast<float>(static_cast<int>(t.random.uniform(0, 5760))) / 16;  // exact with its turns
+    const Color once = color::rgb_of_hsv<float>({h, 1, 1}), again{h + 360 * whole, 1, 1};
+    t.tally(!(farthest(textbook_rgb(again), once) <= 1e-5), color::rgb_of_hsv(again) != once, {again[0]});
+  }
+}
+
+void chromaticity_of_black(Trial& t) {
+  const float tiny = std::numeric_limits<float>::denorm_min();
+  std::vector<Color> lights{{0, 0, 0},          {-0.0F, 0, 0}, {1, -0.5F, -0.5F}, {3e38F, 3e38F, 3e38F},
+                            {tiny, tiny, tiny}, {tiny, 0, 0}};
+  for (std::size_t n = t.samples(1000, 100000); n-- > 0;) {
+    const auto v = static_cast<float>(t.random.magnitude(-140, 120));
+    lights.push_back({v, -v, 0});
+  }
+  for (const Color& c : lights) {
+    const float sum = c[0] + c[1] + c[2], x = c[0] / sum, y = c[1] / sum;
+    const Color ours = color::xyy_of_xyz<float>(c, {0.3127F, 0.3290F});
+    const bool naive_lost = !std::isfinite(x) || !std::isfinite(y) || (x == 0 && y == 0 && c[0] != 0);
+    t.tally(naive_lost, !std::isfinite(ours[0]) || !std::isfinite(ours[1]) || (ours[0] == 0 && c[0] != 0),
+            {c[0], c[1], c[2]});
+    t.require(color::has_xy(c) == (Rational(c[0]) + Rational(c[1]) + Rational(c[2]) != 0),
+              "what is not defined is told", {c[0], c[1], c[2]});
+  }
+  t.require(color::xyz_of_xyy(color::xyy_of_xyz<float>({0, 0, 0}, {0.3127F, 0.3290F})) == Color{0, 0, 0},
+            "black comes home");
+}
+
+void black_ink(Trial& t) {
+  const float tiny = std::numeric_limits<float>::denorm_min();
+  std::vector<Color> colors{{0, 0, 0}, {tiny, 0, 0}, {0x1p-24F, 0x1p-25F, 0}, {0x1p-30F, 0x1p-31F, 0x1p-30F}};
+  for (std::size_t n = t.samples(20000, 1000000); n-- > 0;) {
+    Color c{};
+    const double size = std::exp2(-t.random.uniform(0, 30));
+    for (float& v : c) v = static_cast<float>(t.random.uniform(0, size));
+    colors.push_back(c);
+  }
+  for (const Color& c : colors) {
+    const float k = std::min({1 - c[0], 1 - c[1], 1 - c[2]});
+    Color naive{};
+    for (std::size_t i = 0; i < 3; ++i) naive[i] = (1 - (1 - c[i] - k) / (1 - k)) * (1 - k);
+    t.measure(farthest(naive, c) / 0x1p-24, farthest(color::rgb_of_cmyk(color::cmyk_of_rgb(c)), c) / 0x1p-24,
+              {c[0], c[1], c[2]});
+  }
+}
+
 }  // namespace
 
 std::vector<HardCase> colour() {
@@ -234,6 +346,13 @@ std::vector<HardCase> colour() {
        "1000 trips from Rec.709 to XYZ, Rec.2020, ACES and back; 8-bit colours to Rec.2020 and back",
        "the standard's matrices of four digits", "ColorConfig::conversion", "the colour itself",
        "|x - x0| <= 8 u a trip; 8-bit colours come home", "u a trip", 8, around_the_spaces},
+      {"COL-05", "colours below 0 and above 1 to hue, saturation, value and back",
+       "saturation 0 where the greatest is not above 0", "color.rgb_hsv", "the colour itself",
+       "comes home within 8 u of its greatest magnitude, or of its greatest difference", "u", 8,
+       colours_outside_the_cube},
+      {"COL-06", "hues next to 360, below 0, and many turns on", "a switch over the six sextants",
+       "color.rgb_hsv", "red, and the hue without its turns", "hues go around", "wrong colours", 0,
+       hues_around},
       {"COL-07", "300 floats to either side of each joint, random values of either sign",
        "12.92 v or 1.055 v^(1/2.4) - 0.055", "kernels::encode, decode", "comparison",
        "monotonic, odd, never NaN; all 256 codes come home", "NaN results", 0, transfer_joints},
@@ -243,6 +362,11 @@ std::vector<HardCase> colour() {
       {"COL-10", "every tie of 8 bits and its neighbours, ties of 16 bits, NaN, infinities",
        "v 65535 + 0.5 in float, truncated", "the writers of 8 and 16-bit images", "rationals",
        "the nearest code, ties to even; codes come home", "wrong codes", 0, quantising},
+      {"COL-11", "black, light that cancels, the least and the greatest floats", "X / (X + Y + Z)",
+       "color.xy", "rationals for the sum", "finite, and told where it is not defined; black comes home",
+       "lost chromaticities", 0, chromaticity_of_black},
+      {"COL-12", "black and colours next to it to four inks and back", "(C - K) / (1 - K)", "color.cmy",
+       "the colour itself", "comes home within 4 u", "u", 4, black_ink},
   };
 }
 
