@@ -1,3 +1,4 @@
+#include "runtime/graph/pass_output.h"
 #include "runtime/graph/pixel_run.h"
 #include "runtime/graph/run_effects.h"
 #include "runtime/graph/run_state.h"
@@ -8,67 +9,9 @@
 
 #include <algorithm>
 #include <map>
-#include <type_traits>
 
 namespace frustum {
 namespace {
-
-void warn_of_output(RunState& state, const GraphOutput& output, std::string code, std::string message) {
-  state.problem({.code = std::move(code),
-                 .severity = Severity::warning,
-                 .pointer = output.place.pointer,
-                 .message = std::move(message),
-                 .file = output.place.file,
-                 .line = output.place.line,
-                 .column = output.place.column},
-                output.layers.front().from.node);
-}
-
-NodeError empty_region(const GraphOutput& output) {
-  return {"empty_region", fmt::format("output '{}' has no pixels in the region", output.name)};
-}
-
-// A buffer goes to its file whole, or of pixels the region asked for.
-void save_output(RunState& state, const GraphOutput& output) {
-  SaveRequest request{.path = output_path(output, state.options), .metadata = state.metadata()};
-  request.warn = [&](std::string_view code, const std::string& message) {
-    warn_of_output(state, output, std::string(code), fmt::format("output '{}': {}", output.name, message));
-  };
-  request.admit = [&state](std::uint64_t all) { state.check_memory(all); };
-  const Buffer all = state.buffer(output.layers.front().from),
-               part = cut_to_region(all, state.options.region);
-  if (part.type().is_pixels() && part.type().raster(part.data()).frame().window.empty())
-    throw empty_region(output);
-  state.options.save_buffer(part, request);
-}
-
-// Remembers which output it was that failed: a pass writes several files at once.
-class NamedSink : public Sink {
- public:
-  NamedSink(RunState& state, std::size_t output, const SinkRequest& request)
-      : state_(state), output_(output), file_(named([&] { return state.options.make_sink(request); })) {}
-  void write(std::span<const Tile> layers) override {
-    named([&] { file_->write(layers); });
-  }
-  void finish() override {
-    named([&] { file_->finish(); });
-  }
-
- private:
-  template <class F>
-  std::invoke_result_t<F> named(F&& f) {
-    try {
-      return f();
-    } catch (...) {
-      state_.output_failed(output_);
-      throw;
-    }
-  }
-
-  RunState& state_;
-  std::size_t output_;
-  std::unique_ptr<Sink> file_;
-};
 
 // One pass being run: the operations, what is read from memory, and who wants the pixels.
 class Pass {
