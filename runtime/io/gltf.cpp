@@ -3,10 +3,10 @@
 #include "nodes/kernels/predicates.h"
 #include "nodes/kernels/vector.h"
 #include "runtime/core/error.h"
-#include "runtime/core/node_type.h"
 #include "runtime/io/first_row.h"
 #include "runtime/io/gltf_file.h"
 #include "runtime/io/gltf_material.h"
+#include "runtime/io/gltf_normals.h"
 #include "runtime/io/gltf_primitive.h"
 #include "runtime/io/gltf_read.h"
 #include "runtime/io/gltf_scene.h"
@@ -249,20 +249,6 @@ class Assembler {
   }
 
   // ----- normals
-
-  // Takes normals along, without a division: the cofactors are the transposed inverse times the determinant.
-  static glm::dmat3 normal_matrix(const Placement& p, bool mirrored) {
-    glm::dmat3 l = p.linear;
-    double most = 0;
-    for (glm::length_t c = 0; c < 3; ++c)
-      most = std::max({most, std::abs(l[c].x), std::abs(l[c].y), std::abs(l[c].z)});
-    if (most > 0) l /= most;
-    const double sign = mirrored ? -1 : 1;
-    const auto cross = [&](const glm::dvec3& a, const glm::dvec3& b) {
-      return glm::dvec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x) * sign;
-    };
-    return {cross(l[1], l[2]), cross(l[2], l[0]), cross(l[0], l[1])};
-  }
 
   // Normals of one part, by vertex. Those without a length become 0; returns how many.
   std::size_t vertex_normals(const Part& p, Vec3* out) const {
@@ -508,17 +494,6 @@ Mesh read_gltf_mesh(std::string_view bytes, const FilePath& file, Context& ctx) 
   for (Ref<Column>& c : m.columns)
     if (c->name() == "position") c = c->renamed("position", Space::object);
   return m;
-}
-
-void depend_on_files_beside(NodeType& type) {
-  type.params.files = [files = type.params.files](const void* params, const auto& visit) {
-    if (!files) return;
-    files(params, [&](const FilePath& file) {
-      visit(file);
-      if (file.written.ends_with(".gltf") || file.written.ends_with(".glb"))
-        for (const FilePath& beside : gltf::files_beside(file)) visit(beside);
-    });
-  };
 }
 
 }  // namespace frustum

@@ -1,6 +1,8 @@
 #include "runtime/io/gltf_file.h"
 
 #include "runtime/core/error.h"
+#include "runtime/core/node_type.h"
+#include "runtime/io/gltf.h"
 #include "runtime/io/gltf_data.h"
 
 #include <fmt/format.h>
@@ -151,3 +153,18 @@ std::vector<FilePath> files_beside(const FilePath& file) {
 }
 
 }  // namespace frustum::gltf
+
+namespace frustum {
+
+void depend_on_files_beside(NodeType& type) {
+  type.params.files = [files = type.params.files](const void* params, const auto& visit) {
+    if (!files) return;
+    files(params, [&](const FilePath& file) {
+      visit(file);
+      if (file.written.ends_with(".gltf") || file.written.ends_with(".glb"))
+        for (const FilePath& beside : gltf::files_beside(file)) visit(beside);
+    });
+  };
+}
+
+}  // namespace frustum

@@ -5,6 +5,8 @@
 #include "runtime/io/file_bytes.h"
 #include "runtime/io/gltf.h"
 #include "runtime/io/texture_png.h"
+#include "tests/support/gltf_maker.h"
+#include "tests/support/gltf_problem.h"
 #include "tests/support/meshes.h"
 #include "tests/support/temp_file.h"
 
@@ -193,6 +195,36 @@ TEST_P(RoundTrip, ColumnsOfOtherNamesComeBack) {
   EXPECT_THAT(warnings_, ElementsAre("glTF has no place for the name of column 'w', which is _W there",
                                      "glTF has no place for the name of column 'Heat', which is _HEAT there",
                                      "glTF has no place for column 'HEAT'"));
+}
+
+TEST(GltfAttributes, OfApplicationsAreColumns) {
+  test::GltfMaker g = test::one_triangle();
+  const std::size_t other = g.accessor<float>({0, 0, 1, 1, 0, 1, 0, 1, 1}, "VEC3"),
+                    heat = g.accessor<std::uint8_t>({0, 255, 51}, "SCALAR", true),
+                    flow = g.accessor<float>({1, 2, 3, 4, 5, 6}, "VEC2"),
+                    ids = g.accessor<std::uint32_t>({7, 8, 9}, "SCALAR"),
+                    short_one = g.accessor<float>({1, 2}, "SCALAR");
+  auto& primitives = g.document["meshes"][0]["primitives"];
+  primitives.push_back({{"attributes", {{"POSITION", other}, {"_HEAT", flow}}}});
+  auto& attributes = primitives[0]["attributes"];
+  attributes["_HEAT"] = heat, attributes["_FLOW"] = flow, attributes["_ID"] = heat, attributes["_WHO"] = ids;
+  g.document["accessors"].push_back({{"componentType", 5126}, {"count", 3}, {"type", "MAT2"}});
+  attributes["_TURN"] = g.document["accessors"].size() - 1;
+  Context ctx;
+  const Mesh m = read_gltf(g.glb(), test::box, true, ctx).mesh;
+  EXPECT_EQ(m.validate(), "");
+  EXPECT_THAT(test::column<float>(m, "heat"), ElementsAre(0, 1, 0.2F, 0, 0, 0));
+  EXPECT_THAT(test::column<glm::vec2>(m, "flow"),
+              ElementsAre(glm::vec2(1, 2), glm::vec2(3, 4), glm::vec2(5, 6), glm::vec2(0), glm::vec2(0),
+                          glm::vec2(0)));
+  EXPECT_THAT(test::column<float>(m, "gltf_id"), ElementsAre(0, 1, 0.2F, 0, 0, 0));
+  std::string said;
+  for (const auto& [code, what] : ctx.warnings()) said += what + "\n";
+  for (const char* part : {"the attribute _WHO, which is left out", "the attribute _TURN, which is left out",
+                           "primitives[1] has 2 numbers of 'heat' a vertex, and others 1: they are left out"})
+    EXPECT_THAT(said, testing::HasSubstr(part));
+  attributes["_HEAT"] = short_one;
+  EXPECT_THAT(test::gltf_problem(g.glb()).second, testing::HasSubstr("has 2 elements, and POSITION 3"));
 }
 
 TEST_P(RoundTrip, LightThatNoSurfaceSendsBackIsTold) {

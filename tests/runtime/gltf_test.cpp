@@ -5,7 +5,6 @@
 #include "runtime/core/error.h"
 #include "tests/support/gltf_maker.h"
 #include "tests/support/gltf_problem.h"
-#include "tests/support/meshes.h"
 #include "tests/support/temp_file.h"
 
 #include <gmock/gmock.h>
@@ -267,34 +266,6 @@ TEST(Gltf, AMaterialKeepsItsReflectance) {
       const double n = m.shininess, lobe = 8 * (n + std::exp2(-n / 2)) / ((n + 2) * (n + 4));
       EXPECT_LE(m.diffuse.r + m.specular.r * lobe, 1 + 1e-12) << roughness << " " << metallic;
     }
-}
-
-TEST(Gltf, AttributesOfApplicationsAreColumns) {
-  GltfMaker g = test::one_triangle();
-  const std::size_t other = g.accessor<float>({0, 0, 1, 1, 0, 1, 0, 1, 1}, "VEC3"),
-                    heat = g.accessor<std::uint8_t>({0, 255, 51}, "SCALAR", true),
-                    flow = g.accessor<float>({1, 2, 3, 4, 5, 6}, "VEC2"),
-                    ids = g.accessor<std::uint32_t>({7, 8, 9}, "SCALAR"),
-                    short_one = g.accessor<float>({1, 2}, "SCALAR");
-  auto& primitives = g.document["meshes"][0]["primitives"];
-  primitives.push_back({{"attributes", {{"POSITION", other}, {"_HEAT", flow}}}});
-  auto& attributes = primitives[0]["attributes"];
-  attributes["_HEAT"] = heat, attributes["_FLOW"] = flow, attributes["_ID"] = heat, attributes["_WHO"] = ids;
-  g.document["accessors"].push_back({{"componentType", 5126}, {"count", 3}, {"type", "MAT2"}});
-  attributes["_TURN"] = g.document["accessors"].size() - 1;
-  Context ctx;
-  const Mesh m = read(g.glb(), ctx).mesh;
-  EXPECT_EQ(m.validate(), "");
-  EXPECT_THAT(test::column<float>(m, "heat"), ElementsAre(0, 1, 0.2F, 0, 0, 0));
-  EXPECT_THAT(test::column<glm::vec2>(m, "flow"),
-              ElementsAre(glm::vec2(1, 2), glm::vec2(3, 4), glm::vec2(5, 6), glm::vec2(0), glm::vec2(0),
-                          glm::vec2(0)));
-  EXPECT_THAT(test::column<float>(m, "gltf_id"), ElementsAre(0, 1, 0.2F, 0, 0, 0));
-  for (const char* part : {"the attribute _WHO, which is left out", "the attribute _TURN, which is left out",
-                           "primitives[1] has 2 numbers of 'heat' a vertex, and others 1: they are left out"})
-    EXPECT_THAT(warnings(ctx), HasSubstr(part));
-  attributes["_HEAT"] = short_one;
-  EXPECT_THAT(test::gltf_problem(g.glb()).second, HasSubstr("has 2 elements, and POSITION 3"));
 }
 
 TEST(Gltf, AnEmptyFileIsSaidToBeEmpty) {
