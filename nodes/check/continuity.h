@@ -1,9 +1,12 @@
 // How smoothly pieces of a curve meet (errata E64, E65).
 //
-// C^k: derivatives up to order k from both sides agree. (Each piece by itself is differentiable without end.) G^k: some regular
-// change of parameter makes them agree, so that with the left derivatives l_i and the right ones r_i there are b_1 > 0, b_2 ...
-//   r_1 = b_1 l_1,   r_2 = b_1^2 l_2 + b_2 l_1,   r_3 = b_1^3 l_3 + 3 b_1 b_2 l_2 + b_3 l_1   (Faa di Bruno's formula).
-// Each b_k enters order k along l_1 only: the best one is what is left of r_k along l_1, and the residual what is left across.
+// C^k: derivatives up to order k from both sides agree. (Each piece by itself is differentiable without
+// end.) G^k: some regular change of parameter makes them agree, so that with the left derivatives l_i and
+// the right ones r_i there are b_1 > 0, b_2 ...
+//   r_1 = b_1 l_1,   r_2 = b_1^2 l_2 + b_2 l_1,   r_3 = b_1^3 l_3 + 3 b_1 b_2 l_2 + b_3 l_1
+// (Faa di Bruno's formula).
+// Each b_k enters order k along l_1 only: the best one is what is left of r_k along l_1, and the residual
+// what is left across.
 // Source: Barsky & DeRose 1989, "Geometric continuity of parametric curves", IEEE CG&A 9(6):60.
 #pragma once
 
@@ -23,8 +26,9 @@ using Derivatives = std::array<glm::dvec3, highest_order + 1>;  // value first
 
 struct Joint {
   int c = -1, g = -1;  // the highest order that holds, -1 for a gap; at most highest_order
-  // |l_k - r_k|, and the part of r_k that no change of parameter makes of the left side. From order 1 on relative to the
-  // largest derivative up to that order. Infinite where an order cannot hold: no tangent, or the opposite one.
+  // |l_k - r_k|, and the part of r_k that no change of parameter makes of the left side. From order 1 on
+  // relative to the largest derivative up to that order. Infinite where an order cannot hold: no tangent,
+  // or the opposite one.
   std::array<double, highest_order + 1> c_residual{}, g_residual{};
 };
 
@@ -37,7 +41,8 @@ inline double size_of(const Derivatives& d, std::size_t k) {
 
 inline double relative(double residual, double size) { return residual == 0 ? 0 : residual / size; }
 
-// Residuals of the geometric orders 1 to 3. A side whose first derivative is at most `still` of its largest has no tangent.
+// Residuals of the geometric orders 1 to 3. A side whose first derivative is at most `still` of its largest
+// has no tangent.
 inline void measure_geometric(const Derivatives& l, const Derivatives& r, double still, Joint& out) {
   for (std::size_t k = 1; k <= highest_order; ++k)
     out.g_residual[k] = std::numeric_limits<double>::infinity();
@@ -62,8 +67,8 @@ inline void measure_geometric(const Derivatives& l, const Derivatives& r, double
   }
 }
 
-// Orders up to `orders` hold while their residual is at most `tolerance`; `gap` is what ends of pieces may lie apart.
-// Derivatives are by parameters in which pieces are about 1 long.
+// Orders up to `orders` hold while their residual is at most `tolerance`; `gap` is what ends of pieces may
+// lie apart. Derivatives are by parameters in which pieces are about 1 long.
 inline Joint judge(const Derivatives& l, const Derivatives& r, std::size_t orders, double tolerance,
                    double gap) {
   Joint out;

@@ -7,9 +7,10 @@
 
 namespace frustum::b_spline {
 
-// The degree + 1 basis functions that are not 0 in the span of these knots (2 p of them, the middle two different), at t.
-// Each is at least 0 while t stays in the span, and within 4 p u; they add up to 1 within 4 p u. No 0 / 0 arises.
-// Cost: p (p + 1) / 2 steps. Source: de Boor 1972; Piegl & Tiller 1997, "The NURBS Book", A2.2.
+// The degree + 1 basis functions that are not 0 in the span of these knots (2 p of them, the middle two
+// different), at t. Each is at least 0 while t stays in the span, and within 4 p u; they add up to 1 within
+// 4 p u. No 0 / 0 arises. Cost: p (p + 1) / 2 steps. Source: de Boor 1972; Piegl & Tiller 1997, "The NURBS
+// Book", A2.2.
 template <class T>
 std::vector<T> basis(std::span<const T> knots, const T& t) {
   const std::size_t p = knots.size() / 2;

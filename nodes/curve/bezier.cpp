@@ -144,7 +144,7 @@ NodeType nodes::curve_bezier() {
       .doc(
           "Makes a Bezier curve of control points, or a chain of them, and its points at parameters of your "
           "choice.")
-      .cite("de Casteljau 1959; Forrest 1972, Computer Journal 15:71; errata E60 to E63")
+      .cite("de Casteljau 1959; Forrest 1972, Computer Journal 15:71; errata E61 to E63")
       .cite(
           "Schumaker & Volk 1986, CAGD 3:149; Farouki 2012, CAGD 29:379; Jiang, Li, Cheng & Su 2010, CAMWA "
           "60:744")

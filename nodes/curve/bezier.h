@@ -1,5 +1,6 @@
-// Values of one Bezier curve by the method of your choice: de Casteljau's algorithm, the Bernstein sum, the matrix form,
-// Volk and Schumaker's, and de Casteljau's in twice the digits. They are the same polynomial; what differs is rounding and cost.
+// Values of one Bezier curve by the method of your choice: de Casteljau's algorithm, the Bernstein sum, the
+// matrix form, Volk and Schumaker's, and de Casteljau's in twice the digits. They are the same polynomial;
+// what differs is rounding and cost.
 #pragma once
 
 #include <array>
@@ -20,16 +21,18 @@ constexpr auto choices(Method) {
                     std::pair{Method::compensated, "compensated"}};
 }
 
-// Above this degree the binomials of the matrix form and of Volk and Schumaker's leave the range of single precision.
+// Above this degree the binomials of the matrix form and of Volk and Schumaker's leave the range of single
+// precision.
 inline constexpr std::size_t highest_binomial_degree = 100;
 
 template <class R>
 using Point = glm::vec<3, R>;
 
-// The point at t of the curve of `p`. The end points come out bit for bit by casteljau, bernstein and compensated, and in
-// [0, 1] casteljau and compensated stay in the points' box. Costs and errors, n the degree, u max|P| the unit:
-// casteljau O(n^2), 2 n; bernstein O(n), 4 n; volk_schumaker O(n), 4 n, grows beyond [0, 1]; matrix O(n) a value, up to
-// 3^n; compensated O(n^2), 1 and far below what plain arithmetic can tell.
+// The point at t of the curve of `p`. The end points come out bit for bit by casteljau, bernstein and
+// compensated, and in [0, 1] casteljau and compensated stay in the points' box. Costs and errors, n the
+// degree, u max|P| the unit: casteljau O(n^2), 2 n; bernstein O(n), 4 n; volk_schumaker O(n), 4 n, grows
+// beyond [0, 1]; matrix O(n) a value, up to 3^n; compensated O(n^2), 1 and far below what plain arithmetic
+// can tell.
 template <class R>
 class Evaluator {
  public:

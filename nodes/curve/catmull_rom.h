@@ -1,9 +1,11 @@
 // Curves through points whose tangents come from their neighbours.
 //
-// At uniform knots the tangent of point i is s (p_i+1 - p_i-1), s = 1/2 being Catmull and Rom's (errata E69). At knots a distance
-// h apart it is 2 s times that of the parabola through the three points, which for s = 1/2 is the pyramid of Barry and Goldman:
+// At uniform knots the tangent of point i is s (p_i+1 - p_i-1), s = 1/2 being Catmull and Rom's (errata
+// E69). At knots a distance h apart it is 2 s times that of the parabola through the three points, which
+// for s = 1/2 is the pyramid of Barry and Goldman:
 //   2 s (d_i-1 - (p_i+1 - p_i-1) / (h_i-1 + h_i) + d_i),   d_i = (p_i+1 - p_i) / h_i.
-// Source: Catmull & Rom 1974; Barry & Goldman 1988, SIGGRAPH 22(4):199; Yuksel, Schaefer & Keyser 2011, CAD 43:747.
+// Source: Catmull & Rom 1974; Barry & Goldman 1988, SIGGRAPH 22(4):199; Yuksel, Schaefer & Keyser 2011, CAD
+// 43:747.
 #pragma once
 
 #include <cmath>
@@ -30,8 +32,8 @@ V tangent(const V& p, const V& q, const V& r, const S& h, const S& k, const S& s
   return slope * (S(2) * s);
 }
 
-// Control points of the chain from the second to the last but one of `p`; steps[i] > 0 lies between p[i] and p[i + 1].
-// Requires four points or more.
+// Control points of the chain from the second to the last but one of `p`; steps[i] > 0 lies between p[i]
+// and p[i + 1]. Requires four points or more.
 template <class V, class S>
 std::vector<V> bezier_points(std::span<const V> p, std::span<const S> steps, const S& s) {
   std::vector<V> out{p[1]};

@@ -1,4 +1,5 @@
-// Cubics by ends and derivatives, and Bezier points from them and back: r0 = 3 (p1 - p0), r3 = 3 (p3 - p2) (errata E66 to E68).
+// Cubics by ends and derivatives, and Bezier points from them and back: r0 = 3 (p1 - p0), r3 = 3 (p3 - p2)
+// (errata E66 to E68).
 #pragma once
 
 #include <cstddef>
@@ -10,8 +11,9 @@
 
 namespace frustum::hermite {
 
-// Control points of the chain through `p` with the derivatives `r`, each piece over an interval of length `step`.
-// Inner points are within 2 u (|P| + step |r|); ends are those given, bit for bit. Requires two points or more.
+// Control points of the chain through `p` with the derivatives `r`, each piece over an interval of length
+// `step`. Inner points are within 2 u (|P| + step |r|); ends are those given, bit for bit. Requires two
+// points or more.
 template <class V, class S>
 std::vector<V> bezier_points(std::span<const V> p, std::span<const V> r, const S& step) {
   std::vector<V> out{p[0]};

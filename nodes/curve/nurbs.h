@@ -16,9 +16,10 @@ namespace frustum::nurbs {
 
 using Interval = std::pair<double, double>;
 
-// Where the polynomial with these Bernstein coefficients over [a, b] vanishes inside: an interval of at most 2^-42 of the
-// first, or one number; nothing where it has one sign. Coefficients that are nowhere below 0, and not all 0, leave no root
-// inside. Roots where signs do not change are found at midpoints, or as a narrow interval.
+// Where the polynomial with these Bernstein coefficients over [a, b] vanishes inside: an interval of at
+// most 2^-42 of the first, or one number; nothing where it has one sign. Coefficients that are nowhere
+// below 0, and not all 0, leave no root inside. Roots where signs do not change are found at midpoints, or
+// as a narrow interval.
 inline std::optional<Interval> root_inside(std::span<const double> c, double a, double b, int depth = 42) {
   const bool positive = std::any_of(c.begin(), c.end(), [](double x) { return x > 0; });
   const bool negative = std::any_of(c.begin(), c.end(), [](double x) { return x < 0; });
@@ -35,7 +36,8 @@ inline std::optional<Interval> root_inside(std::span<const double> c, double a, 
   return root_inside(right, middle, b, depth - 1);
 }
 
-// Where the denominator of a curve vanishes: inside a span, or at a knot between two. At the curve's own ends it may.
+// Where the denominator of a curve vanishes: inside a span, or at a knot between two. At the curve's own
+// ends it may.
 inline std::optional<Interval> pole(const kernels::Spline& s) {
   for (const std::size_t span : kernels::spans_of(s)) {
     const double a = s.knots[span], b = s.knots[span + 1];
@@ -48,8 +50,8 @@ inline std::optional<Interval> pole(const kernels::Spline& s) {
   return std::nullopt;
 }
 
-// m (w P, w) as a point and its weight; nothing where the weight becomes 0. A curve maps as its points do only where the
-// weights are mapped as well (errata E71).
+// m (w P, w) as a point and its weight; nothing where the weight becomes 0. A curve maps as its points do
+// only where the weights are mapped as well (errata E71).
 inline std::optional<std::pair<glm::dvec3, double>> projected(const glm::dmat4& m, const glm::dvec3& p,
                                                               double w) {
   glm::dvec4 h;

@@ -1,9 +1,10 @@
 // Where to cut a curve so that straight lines stay near it, with a bound on how far they leave it.
 //
-// A Bezier polynomial of degree n stays within n (n - 1) / 8 max|P_i+2 - 2 P_i+1 + P_i| of the chord, parameter by
-// parameter: |P''| is at most n (n - 1) of those differences, and a chord over [0, 1] errs by at most |P''| / 8. Halving a piece
-// quarters the bound, so that log4(bound / tolerance) halvings are enough; nothing is divided by a chord's length, which may be 0.
-// A rational piece lies in the hull of its control points, and so within the largest of their distances from the chord.
+// A Bezier polynomial of degree n stays within n (n - 1) / 8 max|P_i+2 - 2 P_i+1 + P_i| of the chord,
+// parameter by parameter: |P''| is at most n (n - 1) of those differences, and a chord over [0, 1] errs by
+// at most |P''| / 8. Halving a piece quarters the bound, so that log4(bound / tolerance) halvings are
+// enough; nothing is divided by a chord's length, which may be 0. A rational piece lies in the hull of its
+// control points, and so within the largest of their distances from the chord.
 // Source: Wang 1984, Shanghai Univ. of Sci. & Tech. 1:6; Filip, Magedson & Markot 1986, CAGD 3:295.
 #pragma once
 
@@ -31,9 +32,10 @@ inline double distance_to_segment(const glm::dvec3& q, const glm::dvec3& a, cons
   return std::min({kernels::norm((q - a) - unit * at), kernels::norm(q - a), kernels::norm(q - b)});
 }
 
-// How far the Bezier piece of these homogeneous points may be from its chord. NaN where a point is not finite.
-// A point without a weight does not count. Where a weight is below 0 there is no hull to stay in, and the bound is the largest
-// number; parts of a curve whose denominator is above 0 come to have none such.
+// How far the Bezier piece of these homogeneous points may be from its chord. NaN where a point is not
+// finite. A point without a weight does not count. Where a weight is below 0 there is no hull to stay in,
+// and the bound is the largest number; parts of a curve whose denominator is above 0 come to have none
+// such.
 inline double deviation_bound(std::span<const glm::dvec4> h, bool rational) {
   const std::size_t n = h.size() - 1;
   double bound = 0;
@@ -70,8 +72,9 @@ struct Cut {
   double bound;     // on the chord's deviation
 };
 
-// Cuts one Bezier piece over [from, to] until each bound is at most the tolerance, at most `depth` times in two, and hands
-// the parts to visit(Cut) in order. The bound of a part may stay above it only at that depth, or where it is no number.
+// Cuts one Bezier piece over [from, to] until each bound is at most the tolerance, at most `depth` times in
+// two, and hands the parts to visit(Cut) in order. The bound of a part may stay above it only at that
+// depth, or where it is no number.
 template <class Visit>
 void cut_adaptively(const std::vector<glm::dvec4>& piece, bool rational, Cut part, double tolerance,
                     int depth, const Visit& visit) {
@@ -97,8 +100,9 @@ void cut_uniformly(const kernels::Spline& s, std::size_t span, int parts, const 
               deviation_bound(kernels::bezier_points(s, span, at(k), at(k + 1)), s.rational())});
 }
 
-// Unit tangent in the direction of travel, along the first derivative that does not vanish there; derivatives of even order
-// point against it where the curve comes to a stand, at the end of a piece. Zero where none is left.
+// Unit tangent in the direction of travel, along the first derivative that does not vanish there;
+// derivatives of even order point against it where the curve comes to a stand, at the end of a piece. Zero
+// where none is left.
 // Source: Farin, "Curves and Surfaces for CAGD", section 5.
 inline glm::dvec3 tangent(std::span<const glm::dvec3> derivatives, kernels::KnotSide side) {
   for (std::size_t order = 1; order <= derivatives.size(); ++order)

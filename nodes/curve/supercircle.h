@@ -1,4 +1,5 @@
-// Lame's curves |x / a|^n + |y / b|^n = 1 by both of their forms (errata E59: the exponent is 2 / n - 1, and y has b).
+// Lame's curves |x / a|^n + |y / b|^n = 1 by both of their forms (errata E59: the exponent is 2 / n - 1,
+// and y has b).
 #pragma once
 
 #include <cmath>
@@ -9,8 +10,9 @@
 
 namespace frustum::supercircle {
 
-// a cos t |cos t|^(2 / n - 1) and b sin t |sin t|^(2 / n - 1), written sign(c) |c|^(2 / n), so that 0 to a power below 0 never
-// arises. Points on the axes are exact. Source: Gardner 1965, "The superellipse", Scientific American 213(3):222.
+// a cos t |cos t|^(2 / n - 1) and b sin t |sin t|^(2 / n - 1), written sign(c) |c|^(2 / n), so that 0 to a
+// power below 0 never arises. Points on the axes are exact. Source: Gardner 1965, "The superellipse",
+// Scientific American 213(3):222.
 template <std::floating_point R>
 glm::vec<2, R> by_parameter(const glm::vec<2, R>& radii, R n, R degrees) {
   const auto [sine, cosine] = kernels::sin_cos_degrees(degrees);
@@ -18,8 +20,8 @@ glm::vec<2, R> by_parameter(const glm::vec<2, R>& radii, R n, R degrees) {
   return {radii.x * power(cosine), radii.y * power(sine)};
 }
 
-// Where the ray at an angle meets the implicit form: with u = |cos / a|, v = |sin / b| and m the larger of both the distance is
-// 1 / (m (1 + (min / m)^n)^(1 / n)), in which nothing overflows at any n.
+// Where the ray at an angle meets the implicit form: with u = |cos / a|, v = |sin / b| and m the larger of
+// both the distance is 1 / (m (1 + (min / m)^n)^(1 / n)), in which nothing overflows at any n.
 template <std::floating_point R>
 glm::vec<2, R> by_ray(const glm::vec<2, R>& radii, R n, R degrees) {
   const auto [sine, cosine] = kernels::sin_cos_degrees(degrees);

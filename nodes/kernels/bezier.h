@@ -1,7 +1,9 @@
 #pragma once
-// Bezier curves over [0, 1] by five ways of evaluating them, and their changes of basis. The changes of basis and de
-// Casteljau's algorithm are templates over any numbers, so that they can be checked in exact ones.
-// Errata E61 (the matrix takes p0 p1 p2 p3, not tangents) and E62 (the basis is above 0 inside, and may be below outside).
+// Bezier curves over [0, 1] by five ways of evaluating them, and their changes of basis. The changes of
+// basis and de Casteljau's algorithm are templates over any numbers, so that they can be checked in exact
+// ones.
+// Errata E61 (the matrix takes p0 p1 p2 p3, not tangents) and E62 (the basis is above 0 inside, and may be
+// below outside).
 
 #include <cmath>
 #include <concepts>
@@ -15,7 +17,8 @@
 
 namespace frustum::kernels {
 
-// Repeated mixing; `d` is overwritten. visit(level, i, point) sees every point of the triangle below its first row.
+// Repeated mixing; `d` is overwritten. visit(level, i, point) sees every point of the triangle below its
+// first row.
 template <class V, class S, class Visit>
 V casteljau(std::span<V> d, const S& t, const Visit& visit) {
   const S away = S(1) - t;
@@ -31,10 +34,12 @@ V casteljau(std::span<V> d, const S& t) {
   return casteljau(d, t, [](std::size_t, std::size_t, const V&) {});
 }
 
-// B_0 ... B_n at t. In [0, 1]: by their ratios, outwards from the largest of them, divided by their sum. No binomial is
-// formed, so no degree overflows; what is below the range is 0. Within (n + 3) 2 u of each, and none below 0. Outside of
-// [0, 1]: by the triangle of the recurrence, whose terms have signs. Cost: O(n) inside, O(n^2) outside.
-// Source: Farouki 2012, "The Bernstein polynomial basis: a centennial retrospective", CAGD 29:379, for the basis.
+// B_0 ... B_n at t. In [0, 1]: by their ratios, outwards from the largest of them, divided by their sum. No
+// binomial is formed, so no degree overflows; what is below the range is 0. Within (n + 3) 2 u of each, and
+// none below 0. Outside of [0, 1]: by the triangle of the recurrence, whose terms have signs. Cost: O(n)
+// inside, O(n^2) outside.
+// Source: Farouki 2012, "The Bernstein polynomial basis: a centennial retrospective", CAGD 29:379, for the
+// basis.
 template <std::floating_point R>
 std::vector<R> bernstein(std::size_t n, R t) {
   std::vector<R> b(n + 1, R(0));
@@ -71,8 +76,8 @@ std::vector<S> binomials(std::size_t n) {
   return c;
 }
 
-// a_0 ... a_n of P(t) = sum a_i t^i: a_i = binomial(n, i) times the i-th forward difference of the points. Rounding grows
-// with the differences that cancel: by up to 3^n of |P|.
+// a_0 ... a_n of P(t) = sum a_i t^i: a_i = binomial(n, i) times the i-th forward difference of the points.
+// Rounding grows with the differences that cancel: by up to 3^n of |P|.
 template <class V, class S = typename ScalarOf<V>::type>
 std::vector<V> power_of_bezier(std::span<const V> points) {
   std::vector<V> d(points.begin(), points.end()), a;
@@ -84,7 +89,8 @@ std::vector<V> power_of_bezier(std::span<const V> points) {
   return a;
 }
 
-// The way back: a_i / binomial(n, i) are the differences at the first point, and those of lower order are sums of them.
+// The way back: a_i / binomial(n, i) are the differences at the first point, and those of lower order are
+// sums of them.
 template <class V, class S = typename ScalarOf<V>::type>
 std::vector<V> bezier_of_power(std::span<const V> coefficients) {
   const std::size_t n = coefficients.size() - 1;
@@ -104,8 +110,9 @@ V horner(std::span<const V> a, const S& t) {
   return sum;
 }
 
-// (1 - t)^n sum binomial(n, i) P_i (t / (1 - t))^i, or its mirror image above 1/2, so that the ratio is at most 1.
-// Cost: O(n). Source: Schumaker & Volk 1986, "Efficient evaluation of multivariate polynomials", CAGD 3:149.
+// (1 - t)^n sum binomial(n, i) P_i (t / (1 - t))^i, or its mirror image above 1/2, so that the ratio is at
+// most 1. Cost: O(n). Source: Schumaker & Volk 1986, "Efficient evaluation of multivariate polynomials",
+// CAGD 3:149.
 template <class V, class S>
 V volk_schumaker(std::span<const V> p, const S& t) {
   const std::size_t n = p.size() - 1;
@@ -121,8 +128,8 @@ V volk_schumaker(std::span<const V> p, const S& t) {
   return sum * power;
 }
 
-// De Casteljau's algorithm in twice the digits, rounded once: u |P(t)| + 3 n^2 u^2 max|P|. Near a root of high
-// multiplicity, where every digit of the plain algorithm is noise, this keeps the sign.
+// De Casteljau's algorithm in twice the digits, rounded once: u |P(t)| + 3 n^2 u^2 max|P|. Near a root of
+// high multiplicity, where every digit of the plain algorithm is noise, this keeps the sign.
 // Source: the aim of Jiang, Li, Cheng & Su 2010, CAMWA 60:744, by plain double-double arithmetic.
 template <std::floating_point R>
 R casteljau_compensated(std::span<const R> p, R t) {
@@ -135,8 +142,9 @@ R casteljau_compensated(std::span<const R> p, R t) {
   return d[0].hi + d[0].lo;
 }
 
-// The inner two control points of a cubic over an interval of length h from its ends and its derivatives there, and the
-// derivatives from the points (errata E68). Each inner point is within u (|P| + h |r|) of where it should be.
+// The inner two control points of a cubic over an interval of length h from its ends and its derivatives
+// there, and the derivatives from the points (errata E68). Each inner point is within u (|P| + h |r|) of
+// where it should be.
 template <class V, class S>
 V after_start(const V& p0, const V& r0, const S& h) {
   return p0 + r0 * h / S(3);

@@ -1,9 +1,11 @@
 #pragma once
-// Piecewise polynomial and rational curves in one form: a B-spline over knots. A Bezier curve is the spline of one
-// span whose ends have full multiplicity, and de Boor's algorithm is then de Casteljau's, step by step.
+// Piecewise polynomial and rational curves in one form: a B-spline over knots. A Bezier curve is the spline
+// of one span whose ends have full multiplicity, and de Boor's algorithm is then de Casteljau's, step by
+// step.
 //
-// Inside a span [u_i, u_i+1) of positive length every denominator of de Boor's algorithm holds that span: no 0 / 0
-// arises, whatever knots repeat. (Cox's recurrence for the basis does meet it, and needs 0 / 0 = 0 by convention.)
+// Inside a span [u_i, u_i+1) of positive length every denominator of de Boor's algorithm holds that span:
+// no 0 / 0 arises, whatever knots repeat. (Cox's recurrence for the basis does meet it, and needs 0 / 0 = 0
+// by convention.)
 //
 // Source: de Boor 1972, J. Approx. Theory 6:50; Ramshaw 1989, "Blossoms are polar forms", CAGD 6:323.
 
@@ -43,8 +45,9 @@ glm::vec<n, R> between_ends(glm::vec<n, R> x, const glm::vec<n, R>& a, const glm
   return x;
 }
 
-// away a + along b, for away + along = 1 but for rounding. Where both are at least 0 the result lies between a and b,
-// and is a, bit for bit, where b is a. Rounding: 1.5 ulp of the larger of both products. Exact for exact types.
+// away a + along b, for away + along = 1 but for rounding. Where both are at least 0 the result lies
+// between a and b, and is a, bit for bit, where b is a. Rounding: 1.5 ulp of the larger of both products.
+// Exact for exact types.
 template <class V, class S = typename ScalarOf<V>::type>
 V mixed(const V& a, const V& b, const S& away, const S& along) {
   const V sum = a * away + b * along;
@@ -54,9 +57,10 @@ V mixed(const V& a, const V& b, const S& away, const S& along) {
   return sum;
 }
 
-// The blossom of one span's polynomial at the parameters t(1) ... t(p): the value where all are the same. `d` holds
-// the p + 1 control points of the span and is overwritten; `knots` are the 2 p around it, of which the middle two
-// differ. Convex combinations only, while t stays in the span. Cost: p (p + 1) / 2 mixes.
+// The blossom of one span's polynomial at the parameters t(1) ... t(p): the value where all are the same.
+// `d` holds the p + 1 control points of the span and is overwritten; `knots` are the 2 p around it, of
+// which the middle two differ. Convex combinations only, while t stays in the span. Cost: p (p + 1) / 2
+// mixes.
 template <class V, class T, class At>
 V blossom(std::span<V> d, std::span<const T> knots, const At& t) {
   using S = typename ScalarOf<V>::type;
@@ -102,8 +106,8 @@ void differentiate(std::span<V>& d, std::span<const T>& knots) {
 // Which side of a knot is meant where both meet.
 enum class KnotSide : std::uint8_t { before, after };
 
-// A curve of degree p: n points, n + p + 1 knots that never fall, and n weights or none. It runs over [knots[p],
-// knots[n]], which is not empty.
+// A curve of degree p: n points, n + p + 1 knots that never fall, and n weights or none. It runs over
+// [knots[p], knots[n]], which is not empty.
 struct Spline {
   std::size_t degree = 0;
   std::span<const glm::dvec3> points;
@@ -114,8 +118,8 @@ struct Spline {
   double first() const { return knots[degree]; }
   double last() const { return knots[points.size()]; }
 
-  // The i of the span [knots[i], knots[i + 1]] of positive length that holds t; outside of the domain the one at its
-  // end. Cost: O(log n).
+  // The i of the span [knots[i], knots[i + 1]] of positive length that holds t; outside of the domain the
+  // one at its end. Cost: O(log n).
   std::size_t span_at(double t, KnotSide side = KnotSide::after) const {
     const auto begin = knots.begin() + static_cast<std::ptrdiff_t>(degree),
                end = knots.begin() + static_cast<std::ptrdiff_t>(points.size()) + 1;
@@ -141,8 +145,8 @@ inline std::vector<std::size_t> spans_of(const Spline& s) {
   return out;
 }
 
-// Control points (w x, w y, w z, w) of a span, their weights scaled by a power of two to at most 2: exact but for
-// the products. A polynomial's weights are 1.
+// Control points (w x, w y, w z, w) of a span, their weights scaled by a power of two to at most 2: exact
+// but for the products. A polynomial's weights are 1.
 inline std::vector<glm::dvec4> homogeneous(const Spline& s, std::size_t span) {
   std::vector<glm::dvec4> h;
   double largest = 0;
@@ -156,8 +160,8 @@ inline std::vector<glm::dvec4> homogeneous(const Spline& s, std::size_t span) {
   return h;
 }
 
-// Bezier points, homogeneous, of the part [a, b] of a span. Cost: O(p^3), or none where the knots are already those
-// of a Bezier curve over [a, b].
+// Bezier points, homogeneous, of the part [a, b] of a span. Cost: O(p^3), or none where the knots are
+// already those of a Bezier curve over [a, b].
 inline std::vector<glm::dvec4> bezier_points(const Spline& s, std::size_t span, double a, double b) {
   const std::vector<glm::dvec4> h = homogeneous(s, span);
   const auto knots = s.knots_of(span);
@@ -173,16 +177,17 @@ inline std::vector<glm::dvec4> bezier_points(const Spline& s, std::size_t span, 
   return out;
 }
 
-// Evaluates a curve. Polynomials in R: value within 2 p u max|P| of the span (its points within their box, and the
-// first or last point, bit for bit, at an end of full multiplicity). Rational curves in double and rounded once:
-// within 4 p u max|P| where no weight is below 0. Derivatives lose what their differences cancel.
+// Evaluates a curve. Polynomials in R: value within 2 p u max|P| of the span (its points within their box,
+// and the first or last point, bit for bit, at an end of full multiplicity). Rational curves in double and
+// rounded once: within 4 p u max|P| where no weight is below 0. Derivatives lose what their differences
+// cancel.
 template <std::floating_point R>
 class SplinePoints {
  public:
   explicit SplinePoints(const Spline& s) : s_(s) {}
 
-  // Value and derivatives of order 0 ... out.size() - 1 at t, by the span on that side. NaN and infinities of control
-  // points, and what overflows, come through.
+  // Value and derivatives of order 0 ... out.size() - 1 at t, by the span on that side. NaN and infinities
+  // of control points, and what overflows, come through.
   void at(double t, std::span<glm::dvec3> out, KnotSide side = KnotSide::after) {
     const std::size_t span = s_.span_at(t, side);
     if (s_.rational())
@@ -241,9 +246,9 @@ class SplinePoints {
     for (glm::dvec3& v : out) v = glm::dvec3(glm::vec<3, R>(v));
   }
 
-  // What the limit or the convex hull says of a value that rounding, or 0 / 0, has moved. Near the start of a span
-  // its basis functions vanish the faster the later they come: where all weights that count there are 0, the curve
-  // tends to its first point with a weight; and so from the end.
+  // What the limit or the convex hull says of a value that rounding, or 0 / 0, has moved. Near the start of
+  // a span its basis functions vanish the faster the later they come: where all weights that count there
+  // are 0, the curve tends to its first point with a weight; and so from the end.
   glm::dvec3 settled(std::size_t span, double t, const glm::dvec3& v) const {
     const auto knots = s_.knots_of(span);
     const std::size_t p = s_.degree, low = span - p;

@@ -13,11 +13,11 @@
 
 namespace frustum {
 
-// A B-spline, which every other basis is exactly, or within the rounding of its control points: a Bezier curve has knots of
-// full multiplicity at both ends, a chain of them also (degree) inside, so that pieces share their joints bit for bit.
-// Never less than degree + 1 points; knots never fall, number points + degree + 1, and are finite; the domain
-// [knots[degree], knots[points]] is not empty; no knot inside it repeats more than `degree` times, so that the curve hangs
-// together. A plane curve has z = 0.
+// A B-spline, which every other basis is exactly, or within the rounding of its control points: a Bezier
+// curve has knots of full multiplicity at both ends, a chain of them also (degree) inside, so that pieces
+// share their joints bit for bit. Never less than degree + 1 points; knots never fall, number points +
+// degree + 1, and are finite; the domain [knots[degree], knots[points]] is not empty; no knot inside it
+// repeats more than `degree` times, so that the curve hangs together. A plane curve has z = 0.
 struct Curve {
   std::uint32_t degree = 0;
   std::vector<glm::dvec3> points;  // what the curve follows
@@ -31,8 +31,8 @@ struct Curve {
 template <>
 const BufferType& buffer_type<Curve>();
 
-// Knots of Bezier pieces of a degree that meet at `breaks`, of which there are at least two: each stands degree times, the
-// first and the last once more.
+// Knots of Bezier pieces of a degree that meet at `breaks`, of which there are at least two: each stands
+// degree times, the first and the last once more.
 std::vector<double> chain_knots(std::size_t degree, std::span<const double> breaks);
 
 // A chain of (points - 1) / degree Bezier pieces over [0, 1], [1, 2] ... Requires whole pieces.

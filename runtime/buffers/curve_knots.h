@@ -22,12 +22,14 @@ constexpr auto choices(KnotKind) {
                     std::pair{KnotKind::closed, "closed"}, std::pair{KnotKind::given, "given"}};
 }
 
-// What is wrong with given knots whatever the points are, as NodeError at the parameter knot_values: knots that fall, are
-// beyond 1e150, repeat more than degree times inside the curve or degree + 1 times at its ends, or leave no domain.
+// What is wrong with given knots whatever the points are, as NodeError at the parameter knot_values: knots
+// that fall, are beyond 1e150, repeat more than degree times inside the curve or degree + 1 times at its
+// ends, or leave no domain.
 void check_knots(KnotKind kind, std::span<const double> given, std::size_t degree);
 
-// A curve of a degree >= 1 over knots that pass check_knots. Throws NodeError, at the parameters points, knot_values and
-// weights, where there are too few points, and where knots or weights are not as many as the points ask for.
+// A curve of a degree >= 1 over knots that pass check_knots. Throws NodeError, at the parameters points,
+// knot_values and weights, where there are too few points, and where knots or weights are not as many as
+// the points ask for.
 Curve spline_curve(std::vector<glm::dvec3> points, std::vector<double> weights, std::size_t degree,
                    KnotKind kind, std::span<const double> given);
 

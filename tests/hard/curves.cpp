@@ -176,7 +176,8 @@ void circle(Trial& t) {
   }
 }
 
-// The denominator (1 - t)^2 + 2 w t (1 - t) + t^2 vanishes somewhere in [0, 1] where w <= -1, and nowhere else.
+// The denominator (1 - t)^2 + 2 w t (1 - t) + t^2 vanishes somewhere in [0, 1] where w <= -1, and nowhere
+// else.
 void poles(Trial& t) {
   for (int k = 1; k <= 40; ++k)
     for (const double sign : {-1.0, 0.0, 1.0}) {

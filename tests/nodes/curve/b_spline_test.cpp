@@ -14,7 +14,8 @@ Ref<Curve> spline(std::span<const glm::dvec3> p, int degree, Json more = Json::o
   return test::run_double(nodes::curve_b_spline(), more)[0].as<Curve>();
 }
 
-// Cox's recurrence as printed, 0 / 0 = 0, closed at the last knot of the domain: every function, from all knots.
+// Cox's recurrence as printed, 0 / 0 = 0, closed at the last knot of the domain: every function, from all
+// knots.
 Rational cox(std::span<const Rational> u, std::size_t i, std::size_t p, const Rational& t,
              const Rational& last) {
   if (p == 0) {

@@ -54,7 +54,8 @@ TEST(CurvePolyline, StaysWithinItsToleranceAndItsBound) {
 }
 
 TEST(CurvePolyline, CutsNoMoreThanThePolygonAsksFor) {
-  // |P''| is the constant 2 |P2 - 2 P1 + P0| of a parabola: n lines err by |P''| / (8 n^2), neither more nor less.
+  // |P''| is the constant 2 |P2 - 2 P1 + P0| of a parabola: n lines err by |P''| / (8 n^2), neither more
+  // nor less.
   const Curve c = bezier_chain({{0, 0, 0}, {1, 2, 0}, {2, 0, 0}}, 2);
   for (const int n : {1, 4, 16}) {
     const Drawn d = drawn(c, {{"cutting", "uniform"}, {"segments", n}});
