@@ -5,9 +5,9 @@ namespace {
 
 std::vector<HardCase> all_cases() {
   std::vector<HardCase> all;
-  for (const auto stage :
-       {foundations, transforms, quaternions, projection, clipping, culling, lines, triangles, depth,
-        scanlines, orders, partitions, shading, shadows, texture, sampling, colour, curves, runtime}) {
+  for (const auto stage : {foundations, transforms, quaternions, projection, clipping,   culling, lines,
+                           triangles,   depth,      scanlines,   orders,     partitions, shading, shadows,
+                           rays,        texture,    sampling,    colour,     curves,     runtime}) {
     const auto more = stage();
     all.insert(all.end(), more.begin(), more.end());
   }
