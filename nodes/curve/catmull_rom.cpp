@@ -138,7 +138,8 @@ NodeType nodes::curve_catmull_rom() {
           "errata E69")
       .covers(118)
       .input("through", &Inputs::through, "Points to go through, after those of 'points'.")
-      .param("points", &Params::points, "Points to go through; x, y and z.")
+      .param("points", &Params::points,
+             "Points to go through; x, y and z. By distance, those where the one before lies count once.")
       .param("tension", &Params::tension,
              "s of the tangent s (next - previous): 1/2 is standard, 0 straight; raising it swings wider.")
       .param(
