@@ -1,8 +1,7 @@
 #include "nodes/image/mix.h"
 
 #include "nodes/image.h"
-#include "runtime/buffers/image.h"
-#include "runtime/buffers/real_rows.h"
+#include "runtime/buffers/rgba_planes.h"
 #include "runtime/core/node_type.h"
 
 #include <fmt/format.h>
@@ -21,21 +20,11 @@ struct Outputs {
   Tiled<Image> image;
 };
 
-constexpr std::array<const char*, 4> channels{"R", "G", "B", "A"};
-
 struct State {
   std::array<RealPlane, 4> image{}, other{};
   RealPlane share{};
   double amount;
 };
-
-// R, G, B and A; no A is opaque.
-std::array<RealPlane, 4> planes_of(const Tiled<Image>& image, Precision precision) {
-  std::array<RealPlane, 4> planes{};
-  for (std::size_t k = 0; k < 4; ++k)
-    if (k < 3 || image.frame().find("A")) planes[k] = read_real(image, channels[k], precision);
-  return planes;
-}
 
 void require_alike(const Frame& a, const Frame& b, std::string_view input) {
   if (a.window != b.window || a.samples() != b.samples())
@@ -55,7 +44,7 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   const Frame& from = in.image.frame();
   require_alike(from, in.other.frame(), "other");
   require_color(from, in.other.frame(), "other");
-  State s{planes_of(in.image, ctx.precision), planes_of(in.other, ctx.precision), {}, p.amount};
+  State s{read_rgba(in.image, ctx.precision), read_rgba(in.other, ctx.precision), {}, p.amount};
   if (in.share) {
     require_alike(from, in.share->frame(), "share");
     s.share = read_real(*in.share, in.share->frame().planes.empty() ? "Y" : in.share->frame().planes[0].name,
@@ -66,7 +55,7 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
   to.planes.clear();
   const bool opaque = !from.find("A") && !in.other.frame().find("A");
   for (std::size_t k = 0; k < (opaque ? 3U : 4U); ++k)
-    to.planes.push_back({channels[k], real_kind(ctx.precision)});
+    to.planes.push_back({rgba_names[k], real_kind(ctx.precision)});
   return {std::move(s), {std::move(to)}};
 }
 

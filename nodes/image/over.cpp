@@ -1,8 +1,7 @@
 #include "nodes/image/over.h"
 
 #include "nodes/image.h"
-#include "runtime/buffers/image.h"
-#include "runtime/buffers/real_rows.h"
+#include "runtime/buffers/rgba_planes.h"
 #include "runtime/core/node_type.h"
 
 #include <fmt/format.h>
@@ -22,8 +21,6 @@ struct Outputs {
   Tiled<Image> image;
 };
 
-constexpr std::array<const char*, 4> channels{"R", "G", "B", "A"};
-
 struct State {
   Precision precision;
   std::array<RealPlane, 4> over{}, under{};
@@ -31,17 +28,9 @@ struct State {
   Rect window;
 };
 
-// R, G, B and A; no A is opaque.
-std::array<RealPlane, 4> planes_of(const Tiled<Image>& image, Precision precision) {
-  std::array<RealPlane, 4> planes{};
-  for (std::size_t k = 0; k < 4; ++k)
-    if (k < 3 || image.frame().find("A")) planes[k] = read_real(image, channels[k], precision);
-  return planes;
-}
-
 Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx) {
   const Frame& from = in.image.frame();
-  State s{ctx.precision, planes_of(in.image, ctx.precision), {},
+  State s{ctx.precision, read_rgba(in.image, ctx.precision), {},
           p.top.rgb,     p.bottom.value_or(p.top).rgb,       from.window};
   if (in.under) {
     const Frame& below = in.under->frame();
@@ -52,12 +41,12 @@ Prepared<State, Outputs> prepare(const Inputs& in, const Params& p, Context& ctx
                                   "samples a pixel",
                                   from.window.width(), from.window.height(), from.samples(),
                                   below.window.width(), below.window.height(), below.samples()));
-    s.under = planes_of(*in.under, ctx.precision);
+    s.under = read_rgba(*in.under, ctx.precision);
   }
   Frame to = from;
   to.alpha = Alpha::premultiplied;
   to.planes.clear();
-  for (const char* name : channels) to.planes.push_back({name, real_kind(ctx.precision)});
+  for (const char* name : rgba_names) to.planes.push_back({name, real_kind(ctx.precision)});
   return {std::move(s), {std::move(to)}};
 }
 
